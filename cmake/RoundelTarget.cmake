@@ -1,0 +1,34 @@
+# One place for what every target of the project shares: the standard, the warnings, the sanitizers.
+
+function(roundel_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+  if(ROUNDEL_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(ROUNDEL_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${ROUNDEL_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${ROUNDEL_SANITIZE})
+    if(ROUNDEL_SANITIZE MATCHES "undefined")
+      target_compile_options(${target} PRIVATE -fno-sanitize-recover=undefined)
+    endif()
+  endif()
+endfunction()
+
+# A library of one folder: roundel_library(core a.cpp b.cpp) makes the target roundel_core.
+function(roundel_library folder)
+  add_library(roundel_${folder} STATIC ${ARGN})
+  roundel_target(roundel_${folder})
+endfunction()
+
+# A doctest program: every TEST_CASE becomes a test of its own in ctest.
+function(roundel_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/tests/doctest_main.cpp)
+  roundel_target(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} doctest::doctest)
+  target_compile_definitions(${name} PRIVATE ROUNDEL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  doctest_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
+endfunction()
