@@ -71,7 +71,7 @@ void MarkerSearch::search(const LumaView& frame, const Box& area, int spacing, s
     for (const Seed& seed :
          scanner_.scan(frame, v, u0, u1, contrast_, parameters_.max_diameter_px)) {
       if (found.size() >= limit) return;
-      if (is_claimed(seed.bright_u, v)) continue;
+      if (is_claimed(seed.u, v) || is_claimed(seed.bright_u, v)) continue;
       const int max_extent = static_cast<int>(kMaxBoxToExtent * seed.extent) + 4;
       if (examine(frame, seed.u, v, seed.threshold, max_extent) == Verdict::kAccepted) {
         found.push_back(finder_.segment());
