@@ -28,7 +28,8 @@ class ImageLoader {
 
 GreyImage load_image(const std::string& path);
 
-// Writes 8-bit grey PNG. Throws std::runtime_error that names the file.
-void save_png(const std::string& path, const LumaView& image);
+// Writes 8-bit grey PNG; with its resolution, for printing, where one is given. Throws
+// std::runtime_error that names the file.
+void save_png(const std::string& path, const LumaView& image, double pixels_per_metre = 0);
 
 }  // namespace roundel

@@ -12,4 +12,6 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void add_markers(CLI::App& app);
+
 }  // namespace roundel

@@ -24,6 +24,7 @@ int fail(const CLI::App& app, std::string message, ExitStatus status) {
 int main(int argc, char** argv) {
   CLI::App app("Motion capture of circular markers with one camera.", "roundel");
   app.require_subcommand(1);
+  roundel::add_markers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

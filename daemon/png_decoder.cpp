@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
-#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "daemon/image_codecs.hpp"
-#include "daemon/image_file.hpp"
 
 namespace roundel {
 namespace {
@@ -151,32 +150,6 @@ void decode_png(std::span<const std::uint8_t> bytes, GreyImage& image) {
   std::vector<std::uint8_t> row(decoder.row_bytes());
   if (!decoder.read_luma(row.data(), image)) {
     fail_to_decode(decoder);
-  }
-}
-
-void save_png(const std::string& path, const LumaView& image) {
-  // libpng's simplified interface wants rows without gaps between pixels.
-  std::vector<std::uint8_t> packed;
-  const std::uint8_t* data = image.data;
-  std::ptrdiff_t row_stride = image.row_stride;
-  if (image.pixel_stride != 1) {
-    packed.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-    for (int v = 0; v < image.height; ++v) {
-      for (int u = 0; u < image.width; ++u) {
-        packed.push_back(image.at(u, v));
-      }
-    }
-    data = packed.data();
-    row_stride = image.width;
-  }
-  png_image png = {};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = static_cast<png_uint_32>(image.width);
-  png.height = static_cast<png_uint_32>(image.height);
-  png.format = PNG_FORMAT_GRAY;
-  if (png_image_write_to_file(&png, path.c_str(), 0, data, static_cast<png_int_32>(row_stride),
-                              nullptr) == 0) {
-    throw std::runtime_error(path + " can't be written: " + png.message);
   }
 }
 
