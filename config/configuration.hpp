@@ -18,10 +18,12 @@ struct SimulatorSettings {
   int robots = 12;
   bool corner_markers = true;  // four markers in the arena's corners
   int seed = 1;
-  double noise = 3;         // grey levels, one standard deviation
-  double blur = 0.7;        // pixels, one standard deviation
-  double exposure = 0.002;  // seconds
-  int clutter = 20;         // things on the floor that look a little like markers
+  double noise = 3;                          // grey levels, one standard deviation
+  double blur = 0.7;                         // pixels, one standard deviation
+  double exposure = 0.005;                   // seconds
+  bool clutter = true;                       // things on the floor, some of them much like markers
+  double arena_length = 3, arena_width = 2;  // metres, the rectangle of the corner markers
+  double camera_height = 3;                  // metres above the floor
 };
 
 struct FilesSettings {

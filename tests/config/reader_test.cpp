@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "config/default_yaml.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace roundel;
 
@@ -51,7 +52,7 @@ TEST_CASE("an unknown key is an error with its place, a suggestion and the known
   CHECK(error_for("source: simulator\nsimulator:\n  robot: 3\n") ==
         "roundel.yaml:3:3: simulator.robot: unknown key (did you mean simulator.robots?); "
         "accepted: width, height, frame_rate, robots, corner_markers, seed, noise, blur, exposure, "
-        "clutter");
+        "clutter, arena_length, arena_width, camera_height");
   CHECK(error_for("diameter: 3\n")
             .starts_with("roundel.yaml:1:1: diameter: unknown key (did you mean marker.diameter?); "
                          "accepted: source, "));
@@ -170,7 +171,7 @@ TEST_CASE("broken, huge and deep YAML are errors") {
 }
 
 TEST_CASE("a file is read with its name in the errors") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string good = folder.write("good.yaml", "simulator: {robots: 2}\n");
   CHECK(read_configuration(good).values.simulator.robots == 2);
   const std::string bad = folder.write("bad.yaml", "\nrobots: 2\n");
