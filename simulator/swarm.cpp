@@ -12,6 +12,7 @@ namespace roundel {
 namespace {
 
 constexpr double kAcceleration = 0.6;      // m/s^2
+constexpr double kBraking = 2.0;           // m/s^2
 constexpr double kTurnAcceleration = 8.0;  // rad/s^2
 constexpr double kGoalReached = 0.10;      // metres
 constexpr double kGoalPatience = 12.0;     // seconds
@@ -121,8 +122,9 @@ void Swarm::new_goal(std::size_t i) {
   const double r = options_.radius_m;
   robot.goal = {random.uniform(r, options_.length_m - r), random.uniform(r, options_.width_m - r)};
   robot.goal_time_s = kGoalPatience;
-  if (options_.close_passes && robots_.size() > 1) {
-    // Beyond another robot, so that the way there leads past it.
+  robot.seeks = options_.close_passes && robots_.size() > 1 && !robot.seeks;
+  if (robot.seeks) {
+    // Beyond another robot, so that the way there leads past it; then away again.
     const auto other =
         (i + 1 + random.below(static_cast<std::uint32_t>(robots_.size() - 1))) % robots_.size();
     const Eigen::Vector2d beyond = robots_[other].position - robot.position;
@@ -186,9 +188,8 @@ void Swarm::drive(std::size_t i, double dt) {
   robot.heading = turned(robot.heading, robot.turn_rate * dt);
 
   const double wanted = std::min(limit, options_.max_speed * std::max(0.0, 0.2 + 0.8 * ahead));
-  const double speed_step = kAcceleration * dt;
-  robot.speed =
-      std::max(0.0, robot.speed + std::clamp(wanted - robot.speed, -speed_step, speed_step));
+  const double change = std::clamp(wanted - robot.speed, -kBraking * dt, kAcceleration * dt);
+  robot.speed = std::max(0.0, robot.speed + change);
   const Eigen::Vector2d next = robot.position + robot.heading * (robot.speed * dt);
   if (free_at(next, i, robots_.size())) {
     robot.position = next;
