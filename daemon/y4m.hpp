@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "core/grey_image.hpp"
+#include "core/luma_view.hpp"
+#include "daemon/file_pointer.hpp"
+
+namespace roundel {
+
+// What the header of a YUV4MPEG2 stream tells.
+struct Y4mFormat {
+  int width = 0, height = 0;              // pixels, within kMaxImageSide
+  std::int64_t rate = 30, rate_base = 1;  // frames per second = rate / rate_base
+  std::size_t chroma_bytes = 0;           // behind the luma of every frame
+  double frames_per_second() const {
+    return static_cast<double>(rate) / static_cast<double>(rate_base);
+  }
+};
+
+// Reads raw video (YUV4MPEG2, 8 bits: 4:2:0, 4:1:1, 4:2:2, 4:4:4, mono) as luma, frame by frame.
+// All errors are std::runtime_error that names the file, and the frame counted from 0.
+class Y4mReader {
+ public:
+  // Opens the file ("-": standard input) and reads the header.
+  explicit Y4mReader(const std::string& path);
+
+  const Y4mFormat& format() const { return format_; }
+  std::int64_t frames_read() const { return frames_read_; }
+
+  // The next frame; false at the end of the stream. Allocates only to size the image.
+  bool next(GreyImage& frame);
+
+ private:
+  bool read_line(std::string& line);
+  bool at_end();
+
+  std::string name_;
+  FilePointer file_;  // owns; empty for standard input
+  std::FILE* stream_ = nullptr;
+  Y4mFormat format_;
+  std::int64_t frames_read_ = 0;
+  std::string line_;
+};
+
+// Writes luma-only raw video (YUV4MPEG2, Cmono). Errors are std::runtime_error that names the file.
+class Y4mWriter {
+ public:
+  // Opens the file ("-": standard output) and writes the header.
+  Y4mWriter(const std::string& path, int width, int height, int frames_per_second);
+
+  // The frame must have the size given.
+  void write(const LumaView& frame);
+
+  // Flushes, and tells of errors that a destructor would have to swallow.
+  void close();
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::string name_;
+  FilePointer file_;  // owns; empty for standard output
+  std::FILE* stream_ = nullptr;
+  int width_, height_;
+  std::vector<std::uint8_t> row_;
+};
+
+}  // namespace roundel

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+// The subcommands of `roundel`, one file each. Every function adds its subcommand with all options
+// and a callback that does the work; the callback throws UsageError where the options make no sense
+// (exit status 2) and any other std::exception where the data is at fault (exit status 1).
+namespace roundel {
+
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void add_markers(CLI::App& app);
+
+}  // namespace roundel
