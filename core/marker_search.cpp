@@ -59,7 +59,14 @@ void MarkerSearch::claim_segment() {
 Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold, int max_extent) {
   const int limit = std::min(parameters_.max_diameter_px, max_extent);
   const Verdict verdict = finder_.examine(frame, u, v, threshold, {limit, limit});
-  if (verdict == Verdict::kAccepted) claim_segment();
+  if (verdict != Verdict::kAccepted) return verdict;
+  // A blurred edge pixel just outside of a claimed marker leads into it again.
+  const Ellipse& ellipse = finder_.segment().ellipse;
+  if (is_claimed(static_cast<int>(std::lround(ellipse.u)),
+                 static_cast<int>(std::lround(ellipse.v)))) {
+    return Verdict::kKnown;
+  }
+  claim_segment();
   return verdict;
 }
 
