@@ -86,10 +86,12 @@ void Swarm::place(std::uint64_t seed) {
     std::vector<Eigen::Vector2d> slots;
     const double pitch = 2 * r + 1.5 * min_gap_m();
     const double row_pitch = pitch * std::sqrt(0.75);
-    int row = 0;
-    for (double y = r; y <= options_.width_m - r; y += row_pitch, ++row) {
-      for (double x = r + (row % 2) * 0.5 * pitch; x <= options_.length_m - r; x += pitch) {
-        if (free_at({x, y}, 0, 0)) slots.emplace_back(x, y);
+    const int rows = static_cast<int>((options_.width_m - 2 * r) / row_pitch) + 1;
+    const int columns = static_cast<int>((options_.length_m - 2 * r) / pitch) + 1;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const Eigen::Vector2d slot(r + (column + 0.5 * (row % 2)) * pitch, r + row * row_pitch);
+        if (free_at(slot, 0, 0)) slots.push_back(slot);
       }
     }
     if (slots.size() < count) {

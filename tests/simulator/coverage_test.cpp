@@ -65,7 +65,7 @@ TEST_CASE("a projected disc has the centroid and the area of the analytic outlin
       CHECK((seen.centroid - truth.centroid).norm() < 0.003);
       // As an error of the radius, in pixels.
       const double radius = std::sqrt(truth.area / std::numbers::pi);
-      CHECK(std::abs(std::sqrt(seen.area / std::numbers::pi) - radius) < 0.003);
+      CHECK(std::abs(std::sqrt(seen.area / std::numbers::pi) - radius) < 0.0015);
     }
   }
 }
