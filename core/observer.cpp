@@ -45,7 +45,7 @@ bool may_be_plain_centre(const Segment& segment) {
   const double ellipse_area = std::numbers::pi * inner.a * inner.b;
   const double area =
       segment.bright_share * std::numbers::pi * segment.ellipse.a * segment.ellipse.b;
-  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.2 * grid) return false;
+  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.1 * grid) return false;
   const double tolerance = 0.06 + grid;
   return std::abs(inner.a / (ratio * segment.ellipse.a) - 1) < tolerance &&
          std::abs(inner.b / (ratio * segment.ellipse.b) - 1) < tolerance;
