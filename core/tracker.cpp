@@ -1,17 +1,234 @@
 #include "core/tracker.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/frame_check.hpp"
+#include "core/marker_search.hpp"
+#include "core/track.hpp"
+
 namespace roundel {
 
-struct Tracker::Impl {};
+namespace {
 
-Tracker::Tracker(const DetectorParameters&, std::optional<CameraModel>) {}
+constexpr int kMaxMissed = 30;       // frames; then a track ends
+constexpr int kNewcomerFrames = 5;   // a full search is spread over as many frames
+constexpr double kLocalReach = 2.0;  // of the search around an expected place, in diameters
+constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
+constexpr double kSameSize = 1.6;    // ratio of sizes of one marker in neighbouring frames
+constexpr double kSureReading = 0.99;
+
+double mean_radius(const Ellipse& e) {
+  return std::sqrt(e.a * e.b);
+}
+
+bool similar_size(const Ellipse& a, const Ellipse& b) {
+  const double ratio = mean_radius(a) / mean_radius(b);
+  return ratio < kSameSize && ratio > 1 / kSameSize;
+}
+
+double distance(const Ellipse& a, const Ellipse& b) {
+  return std::hypot(a.u - b.u, a.v - b.v);
+}
+
+}  // namespace
+
+struct Tracker::Impl {
+  Impl(const DetectorParameters& p, const std::optional<CameraModel>& camera)
+      : parameters(p), search(p), observer(p, camera) {
+    const auto usual = static_cast<std::size_t>(std::min(p.max_markers, 1024));
+    tracks.reserve(usual);
+    found.reserve(usual);
+    markers.reserve(usual);
+  }
+
+  void follow_tracks(const LumaView& frame);
+  bool follow(const LumaView& frame, const Track& track);
+  void search_nearby(const LumaView& frame, const Track& track);
+  void find_newcomers(const LumaView& frame);
+  void exchange_mistaken();
+  void adopt(const Observation& observation);
+  Track* lost_track_for(const Observation& observation);
+  void publish();
+
+  DetectorParameters parameters;
+  MarkerSearch search;
+  Observer observer;
+  std::vector<Track> tracks;  // by rising number
+  std::vector<Segment> found;
+  std::vector<Marker> markers;
+  std::int64_t next_number = 1;
+  int band = 0;  // the part of the image searched for newcomers in this frame
+};
+
+// From the expected place inward: where the ring should be, a dark pixel starts the fill.
+bool Tracker::Impl::follow(const LumaView& frame, const Track& track) {
+  const Ellipse expected = track.predicted();
+  const auto levels = measure_levels(frame, expected, parameters.min_contrast);
+  if (!levels) return false;
+  constexpr double kRing = 0.8;
+  const double cosine = std::cos(expected.angle), sine = std::sin(expected.angle);
+  const int extent = static_cast<int>(kMaxGrowth * 2 * expected.a) + 4;
+  for (const double side : {-kRing, kRing}) {
+    const int u = static_cast<int>(std::lround(expected.u + side * expected.a * cosine));
+    const int v = static_cast<int>(std::lround(expected.v + side * expected.a * sine));
+    if (!frame.contains(u, v) || search.is_claimed(u, v)) continue;
+    const int threshold = static_cast<int>(std::lround(levels->middle()));
+    if (search.examine(frame, u, v, threshold, extent) == Verdict::kAccepted) {
+      return similar_size(search.segment().ellipse, track.ellipse);
+    }
+  }
+  return false;
+}
+
+// The marker moved further than its own size allows to follow: a search around the expected place.
+void Tracker::Impl::search_nearby(const LumaView& frame, const Track& track) {
+  const Ellipse expected = track.predicted();
+  const int reach = static_cast<int>(kLocalReach * 2 * expected.a) + 2;
+  const int u = static_cast<int>(expected.u), v = static_cast<int>(expected.v);
+  if (u + reach < 0 || v + reach < 0 || u - reach >= frame.width || v - reach >= frame.height) {
+    return;
+  }
+  const Box area{u - reach, v - reach, u + reach, v + reach};
+  const int spacing = std::max(search.smallest_spacing(), static_cast<int>(0.3 * expected.b));
+  search.search(frame, area, spacing, static_cast<std::size_t>(parameters.max_markers), found);
+}
+
+void Tracker::Impl::follow_tracks(const LumaView& frame) {
+  for (Track& track : tracks) {
+    track.seen = false;
+    if (track.missed == 0 && follow(frame, track)) {
+      track.update(observer.observe(frame, search.segment()), observer.id_count());
+    }
+  }
+  // Only after every track that is where it should be has claimed its pixels.
+  for (Track& track : tracks) {
+    if (track.seen) continue;
+    ++track.missed;
+    search_nearby(frame, track);
+  }
+}
+
+void Tracker::Impl::find_newcomers(const LumaView& frame) {
+  // What was just lost may be anywhere; for what may come in, a part of the image a frame will do.
+  const bool just_lost = std::any_of(tracks.begin(), tracks.end(),
+                                     [](const Track& t) { return !t.seen && t.missed == 1; });
+  const bool everything = tracks.empty() || just_lost;
+  const int height = frame.height;
+  Box area{0, 0, frame.width - 1, height - 1};
+  if (!everything) {
+    area.v0 = height * band / kNewcomerFrames;
+    area.v1 = height * (band + 1) / kNewcomerFrames - 1;
+    band = (band + 1) % kNewcomerFrames;
+  }
+  search.search(frame, area, search.smallest_spacing(),
+                static_cast<std::size_t>(parameters.max_markers), found);
+}
+
+// A track that was not seen in this frame and that an observation may continue: the one with its
+// id, else the nearest that does not have another id.
+Track* Tracker::Impl::lost_track_for(const Observation& observation) {
+  const Ellipse& here = observation.segment.ellipse;
+  Track* best = nullptr;
+  double best_distance = 0;
+  bool best_named = false;
+  for (Track& track : tracks) {
+    if (track.seen || !similar_size(here, track.ellipse)) continue;
+    const IdEvidence::Name name = track.evidence.best(observer.id_count());
+    const bool known = name.id > 0 && name.probability >= parameters.min_id_probability;
+    const bool sure = observation.id > 0 && observation.id_probability >= kSureReading;
+    if (known && sure && name.id != observation.id) continue;
+    const bool named = known && sure;
+    const double away = distance(here, track.predicted());
+    // An id may come back anywhere that it could have moved to; without one, only close by.
+    const double reach = 2 * here.a * (named ? kLocalReach + 0.5 * track.missed : kLocalReach);
+    if (away > reach && !(named && track.missed <= 2)) continue;
+    if (!best || (named && !best_named) || (named == best_named && away < best_distance)) {
+      best = &track;
+      best_distance = away;
+      best_named = named;
+    }
+  }
+  return best;
+}
+
+void Tracker::Impl::adopt(const Observation& observation) {
+  if (Track* track = lost_track_for(observation)) {
+    track->update(observation, observer.id_count());
+    return;
+  }
+  if (tracks.size() >= static_cast<std::size_t>(parameters.max_markers)) return;
+  Track& track = tracks.emplace_back();
+  track.number = next_number++;
+  track.ellipse = observation.segment.ellipse;
+  track.update(observation, observer.id_count());
+}
+
+// Two robots that passed each other faster than the frames could follow: each track's reading then
+// surely names the other's id, and the observations change places.
+void Tracker::Impl::exchange_mistaken() {
+  const int ids = observer.id_count();
+  const auto mistaken = [&](const Track& track) {
+    if (!track.seen || track.observation.id < 1) return false;
+    const IdEvidence::Name name = track.evidence.best(ids);
+    return name.id > 0 && name.id != track.observation.id &&
+           track.observation.id_probability >= kSureReading;
+  };
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!mistaken(tracks[i])) continue;
+    const int wanted = tracks[i].observation.id;
+    for (std::size_t k = i + 1; k < tracks.size(); ++k) {
+      if (!mistaken(tracks[k])) continue;
+      if (tracks[k].evidence.best(ids).id != wanted) continue;
+      if (tracks[k].observation.id != tracks[i].evidence.best(ids).id) continue;
+      const Observation first = tracks[i].observation;
+      tracks[i].update(tracks[k].observation, ids);
+      tracks[k].update(first, ids);
+      break;
+    }
+  }
+}
+
+void Tracker::Impl::publish() {
+  markers.clear();
+  for (const Track& track : tracks) {
+    if (!track.seen) continue;
+    Marker marker = observer.to_marker(track.observation, track.pose_index);
+    marker.track = track.number;
+    const IdEvidence::Name name = track.evidence.best(observer.id_count());
+    if (name.id > 0 && name.probability >= parameters.min_id_probability) {
+      marker.id = name.id;
+      marker.id_probability = name.probability;
+    }
+    if (marker.has_pose) marker.ambiguity = std::exp(-track.pose_log_odds);
+    markers.push_back(marker);
+  }
+}
+
+Tracker::Tracker(const DetectorParameters& parameters, std::optional<CameraModel> camera)
+    : impl_(std::make_unique<Impl>(parameters, camera)) {}
 Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
-std::span<const Marker> Tracker::track(const LumaView&) {
-  return {};
+
+std::span<const Marker> Tracker::track(const LumaView& frame) {
+  Impl& self = *impl_;
+  check_frame(frame, self.observer.camera());
+  self.search.begin(frame);
+  self.found.clear();
+  self.follow_tracks(frame);
+  self.find_newcomers(frame);
+  for (const Segment& segment : self.found) self.adopt(self.observer.observe(frame, segment));
+  self.exchange_mistaken();
+  std::erase_if(self.tracks, [](const Track& track) { return track.missed > kMaxMissed; });
+  self.publish();
+  return self.markers;
 }
 
-void Tracker::reset() {}
+void Tracker::reset() {
+  impl_->tracks.clear();
+  impl_->band = 0;
+}
 
 }  // namespace roundel

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/detector_parameters.hpp"
+#include "core/luma_view.hpp"
+#include "core/row_scanner.hpp"
+#include "core/segment.hpp"
+
+namespace roundel {
+
+// Looks for markers whose place is not known. One pass over the rows of an area finds all of them
+// together; rows are visited at a spacing below the height of the smallest marker's bright centre
+// (METHOD.md section 1). What is known already is claimed first and costs nothing again.
+class MarkerSearch {
+ public:
+  explicit MarkerSearch(const DetectorParameters& parameters);
+
+  // Starts a frame: forgets the claims, measures the noise.
+  void begin(const LumaView& frame);
+
+  // Grows a segment at a known place; a success claims its area.
+  Verdict examine(const LumaView& frame, int u, int v, int threshold, int max_extent);
+  const Segment& segment() const { return finder_.segment(); }
+
+  // Whether a pixel lies in a marker found in this frame.
+  bool is_claimed(int u, int v) const;
+
+  // Appends the segments whose centre disc is crossed by rows first_v, first_v + spacing, ...
+  // inside the area, up to `limit` segments in all; claims them.
+  void search(const LumaView& frame, const Box& area, int spacing, std::size_t limit,
+              std::vector<Segment>& found);
+
+  // Row spacing that misses no marker of the smallest permitted size.
+  int smallest_spacing() const { return smallest_spacing_; }
+
+ private:
+  struct Claim {
+    std::int32_t u0, u1, next_in_row;
+  };
+  struct RowHead {
+    std::uint32_t stamp = 0;
+    std::int32_t first = -1;
+  };
+
+  void claim_segment();
+
+  DetectorParameters parameters_;
+  int smallest_spacing_ = 1;
+  int contrast_ = 0;  // grey levels that count as an edge in this frame
+  RowScanner scanner_;
+  SegmentFinder finder_;
+  std::vector<Claim> claims_;
+  std::vector<RowHead> rows_;
+  std::uint32_t stamp_ = 0;
+};
+
+}  // namespace roundel

@@ -1,0 +1,161 @@
+#include "core/observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/conic.hpp"
+#include "core/covariance.hpp"
+
+namespace roundel {
+
+namespace {
+
+// Noise of what is read off a thresholded outline, pixels: an edge pixel is in or out, which alone
+// spreads evenly over a pixel. Used to weigh the hypotheses and for the published deviations.
+constexpr double kOutlineNoise = 0.30;
+constexpr double kToothEdgeNoise = 0.15;
+
+void require(bool condition, const char* what) {
+  if (!condition) throw std::invalid_argument(what);
+}
+
+void check(const DetectorParameters& p) {
+  require(p.diameter_m > 0 && std::isfinite(p.diameter_m),
+          "the marker's diameter must be positive");
+  require(p.max_markers >= 1 && p.max_markers <= 100000, "max_markers must be 1 to 100000");
+  require(p.min_diameter_px >= 6, "min_diameter_px must be 6 or more");
+  require(p.max_diameter_px >= p.min_diameter_px,
+          "max_diameter_px must not be below min_diameter_px");
+  require(p.min_contrast >= 5 && p.min_contrast <= 200,
+          "min_contrast must be 5 to 200 grey levels");
+}
+
+double mean_radius(const Ellipse& ellipse) {
+  return std::sqrt(ellipse.a * ellipse.b);
+}
+
+// How well a plain marker's bright centre fits a pose ([P] 3.1.1): the centroid of the inner disc's
+// image lies on the line from the image of the common centre to the outer ellipse's centre, at the
+// share of the discs' areas.
+double plain_log_likelihood(const Segment& segment, double inner_area_share,
+                            const Eigen::Vector2d& projected_centre) {
+  const Eigen::Vector2d outer(segment.ellipse.u, segment.ellipse.v);
+  const Eigen::Vector2d expected = projected_centre + inner_area_share * (outer - projected_centre);
+  const Eigen::Vector2d seen(segment.bright_u, segment.bright_v);
+  const double inner_radius = std::sqrt(inner_area_share) * mean_radius(segment.ellipse);
+  // A centroid averages the noise of its outline's pixels, about pi r of them in each direction.
+  const double variance = kOutlineNoise * kOutlineNoise / (std::numbers::pi * inner_radius);
+  return -0.5 * (seen - expected).squaredNorm() / variance;
+}
+
+}  // namespace
+
+Observer::Observer(const DetectorParameters& parameters, std::optional<CameraModel> camera)
+    : parameters_(parameters), camera_(camera) {
+  check(parameters);
+  if (parameters.bits != 0) reader_.emplace(parameters.bits, parameters.hamming);
+}
+
+void Observer::observe_with_camera(const LumaView& frame, Observation& observation) {
+  const Segment& segment = observation.segment;
+  const double radius_m = parameters_.diameter_m / 2;
+  const auto conic = undistorted_conic(segment.ellipse, *camera_);
+  if (!conic) return;
+  const auto circles = circle_poses(*conic, radius_m);
+  if (!circles) return;
+
+  std::array<std::optional<CodeReading>, 2> readings;
+  std::array<Eigen::Vector2d, 2> centres;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Pose pose = pose_from_circle((*circles)[i], 0);
+    const auto centre = camera_->project(pose.position);
+    if (!centre) return;
+    centres[i] = *centre;
+    if (reader_) {
+      readings[i] = reader_->read(frame, PlaneProjection(pose, radius_m, *camera_),
+                                  mean_radius(segment.ellipse), segment.levels);
+    }
+  }
+  observation.pose_count = 2;
+  observation.coded = readings[0].has_value() || readings[1].has_value();
+  for (std::size_t i = 0; i < 2; ++i) {
+    PoseHypothesis& hypothesis = observation.poses[i];
+    if (observation.coded) {
+      const auto& reading = readings[i];
+      constexpr double kNothingRead = -50;
+      hypothesis.log_likelihood =
+          reading ? -0.5 * reading->edge_scatter / (kToothEdgeNoise * kToothEdgeNoise) +
+                        std::log(std::max(reading->probability, 1e-9))
+                  : kNothingRead;
+      hypothesis.pose =
+          pose_from_circle((*circles)[i], reading && reading->id > 0 ? reading->yaw : 0);
+    } else {
+      hypothesis.log_likelihood = plain_log_likelihood(segment, segment.bright_share, centres[i]);
+      hypothesis.pose = pose_from_circle((*circles)[i], 0);
+    }
+  }
+  const std::size_t best =
+      observation.poses[1].log_likelihood > observation.poses[0].log_likelihood ? 1 : 0;
+  if (best == 1) std::swap(observation.poses[0], observation.poses[1]);
+  if (readings[best] && readings[best]->id > 0) {
+    observation.id = readings[best]->id;
+    observation.id_probability = readings[best]->probability;
+  }
+}
+
+Observation Observer::observe(const LumaView& frame, const Segment& segment) {
+  Observation observation;
+  observation.segment = segment;
+  if (camera_) {
+    observe_with_camera(frame, observation);
+  } else if (reader_) {
+    // Without a camera the ring is taken for concentric with the outline: good enough for the id.
+    const auto reading = reader_->read(frame, PlaneProjection(segment.ellipse),
+                                       mean_radius(segment.ellipse), segment.levels);
+    observation.coded = reading.has_value();
+    if (reading && reading->id > 0) {
+      observation.id = reading->id;
+      observation.id_probability = reading->probability;
+    }
+  }
+  return observation;
+}
+
+Marker Observer::to_marker(const Observation& observation, int pose_index) const {
+  Marker marker;
+  const Ellipse& ellipse = observation.segment.ellipse;
+  marker.ellipse = ellipse;
+  marker.u = ellipse.u;
+  marker.v = ellipse.v;
+  if (observation.pose_count == 0) return marker;
+
+  const PoseHypothesis& chosen = observation.poses[static_cast<std::size_t>(pose_index)];
+  const PoseHypothesis& other = observation.poses[static_cast<std::size_t>(1 - pose_index)];
+  marker.has_pose = true;
+  marker.pose = chosen.pose;
+  marker.has_alternative = true;
+  marker.alternative = other.pose;
+  marker.ambiguity = std::exp(std::min(0.0, other.log_likelihood - chosen.log_likelihood));
+  if (const auto centre = camera_->project(chosen.pose.position)) {
+    marker.u = centre->x();
+    marker.v = centre->y();
+  }
+  EdgeNoise noise;
+  noise.outline_px = kOutlineNoise;
+  // The teeth's edges: about as many pixels of edge as the ring is wide, times their number.
+  noise.yaw_rad = std::numeric_limits<double>::infinity();
+  if (observation.coded) {
+    const double ring_radius = 0.47 * mean_radius(ellipse);
+    noise.yaw_rad = kToothEdgeNoise / ring_radius / std::sqrt(2.0 * std::max(2, parameters_.bits));
+  }
+  const PoseCovariance covariance =
+      pose_covariance(chosen.pose, parameters_.diameter_m / 2, *camera_, noise);
+  marker.sigma_position = covariance.diagonal().head<3>().cwiseSqrt();
+  marker.sigma_rotation = covariance.diagonal().tail<3>().cwiseSqrt();
+  return marker;
+}
+
+}  // namespace roundel

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/camera_model.hpp"
+#include "core/code_reader.hpp"
+#include "core/detector_parameters.hpp"
+#include "core/luma_view.hpp"
+#include "core/marker.hpp"
+#include "core/segment.hpp"
+
+namespace roundel {
+
+// One of the two poses that a marker's outline allows, and what speaks for it.
+struct PoseHypothesis {
+  Pose pose;
+  double log_likelihood = 0;  // of what was seen inside the outline; comparable within a marker
+};
+
+// A marker as one frame shows it, before a track adds what earlier frames showed.
+struct Observation {
+  Segment segment;
+  int id = -1;                          // read in this frame; -1: none or not readable
+  double id_probability = 0;            // given this frame alone
+  bool coded = false;                   // a code ring was seen, readable or not
+  int pose_count = 0;                   // 0 without a camera model, else 2
+  std::array<PoseHypothesis, 2> poses;  // the likelier one first
+};
+
+// Turns segments into observations: two poses from the outline, the code or the bright centre read
+// under both, the likelier one first (METHOD.md sections 3 to 5).
+class Observer {
+ public:
+  // Throws std::invalid_argument for parameters out of range.
+  Observer(const DetectorParameters& parameters, std::optional<CameraModel> camera);
+
+  const std::optional<CameraModel>& camera() const { return camera_; }
+  int id_count() const { return reader_ ? reader_->code().id_count() : 0; }
+
+  Observation observe(const LumaView& frame, const Segment& segment);
+
+  // The observation as users get it, with the given one of its poses; id and track are the
+  // caller's.
+  Marker to_marker(const Observation& observation, int pose_index) const;
+
+ private:
+  void observe_with_camera(const LumaView& frame, Observation& observation);
+
+  DetectorParameters parameters_;
+  std::optional<CameraModel> camera_;
+  std::optional<CodeReader> reader_;  // none when bits is 0
+};
+
+}  // namespace roundel

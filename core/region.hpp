@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/luma_view.hpp"
+#include "core/moments.hpp"
+
+namespace roundel {
+
+// Pixels u0 ... u1 of row v, both ends included.
+struct Run {
+  int v = 0, u0 = 0, u1 = 0;
+};
+
+// A pixel rectangle, all four sides included.
+struct Box {
+  int u0 = 0, v0 = 0, u1 = 0, v1 = 0;
+  int width() const { return u1 - u0 + 1; }
+  int height() const { return v1 - v0 + 1; }
+};
+
+enum class FillResult {
+  kComplete,     // the whole connected region, away from the image border
+  kNoSeed,       // the first pixel is not dark
+  kTouchesEdge,  // the region reaches the image border: it is cut off
+  kTooLarge      // given up at the size limit
+};
+
+// A connected dark region and what follows from its outer outline.
+struct Region {
+  int origin_u = 0, origin_v = 0;  // of both moments
+  Box box;
+  Moments dark;    // the region's own pixels
+  Moments filled;  // every row filled from the region's first pixel to its last: for a convex
+                   // outline the whole interior, whatever specks and patterns lie within
+};
+
+// Collects connected regions of dark pixels by runs: a pixel is compared with the threshold when it
+// is first touched, and no label image exists ([P] 3; METHOD.md section 1). Eight-connected, so
+// that a thin tilted ring holds together. Memory is reused from region to region.
+class RegionFiller {
+ public:
+  struct Limits {
+    int max_width = 1 << 14, max_height = 1 << 14;  // pixels; a wider or higher region is given up
+  };
+
+  // The dark region (luma < threshold) that holds pixel (u, v), which must lie in the frame.
+  FillResult fill(const LumaView& frame, int u, int v, int threshold, const Limits& limits);
+
+  const Region& region() const { return region_; }
+
+  // First and last pixel of every row of the last complete region, from box.v0 on.
+  std::span<const Run> row_spans() const { return spans_; }
+
+ private:
+  struct StoredRun {
+    Run run;
+    std::int32_t next_in_row;  // index of another run of the same row, -1 at the end
+  };
+  struct RowHead {
+    std::uint32_t stamp = 0;  // the fill that wrote `first`; older ones are void
+    std::int32_t first = -1;
+  };
+
+  template <int kPixelStride>
+  FillResult fill_with_stride(const LumaView& frame, int u, int v, int threshold,
+                              const Limits& limits);
+  void summarise(int u, int v);
+
+  std::vector<StoredRun> runs_;  // in order of discovery; also the work list
+  std::vector<RowHead> rows_;    // by image row
+  std::vector<Run> spans_;
+  std::uint32_t stamp_ = 0;
+  Region region_;
+};
+
+}  // namespace roundel

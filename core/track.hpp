@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "core/id_evidence.hpp"
+#include "core/observer.hpp"
+
+namespace roundel {
+
+// A marker that is followed from frame to frame.
+struct Track {
+  std::int64_t number = 0;  // from 1, never used twice
+  Ellipse ellipse;          // where it was seen last
+  int threshold = 0;
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  // pixels a frame
+  int missed = 0;  // frames since it was seen; 0: seen in this frame
+  IdEvidence evidence;
+
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of the pose published last; zero before
+  double pose_log_odds = 0;  // for the branch that `normal` belongs to, over the other one
+
+  Observation observation;  // of this frame, when `seen`
+  bool seen = false;
+  int pose_index = 0;  // which of the observation's poses is held for right
+
+  // Where the ellipse is expected in the current frame, before it has been seen there.
+  Ellipse predicted() const;
+  int frames_since_seen() const { return missed > 1 ? missed : 1; }
+
+  // Takes over this frame's observation: place, motion, evidence for the id and for one of the
+  // poses.
+  void update(const Observation& seen_now, int id_count);
+};
+
+}  // namespace roundel
