@@ -1,7 +1,6 @@
 #include "tools/json_frame.hpp"
 
 namespace roundel {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -12,8 +11,6 @@ Json vector_json(const Eigen::Vector3d& v) {
 Json quaternion_json(const Eigen::Quaterniond& q) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
-
-}  // namespace
 
 Json marker_json(const Marker& marker) {
   Json json = {

@@ -18,6 +18,9 @@ struct FrameInfo {
   double elapsed_us = 0;   // of the detection alone
 };
 
+nlohmann::ordered_json vector_json(const Eigen::Vector3d& v);         // [x, y, z]
+nlohmann::ordered_json quaternion_json(const Eigen::Quaterniond& q);  // [w, x, y, z]
+
 // Without a pose, everything that needs one is left out.
 nlohmann::ordered_json marker_json(const Marker& marker);
 

@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   roundel::add_detect(app);
   roundel::add_track(app);
+  roundel::add_simulate(app);
   roundel::add_markers(app);
   try {
     app.parse(argc, argv);
