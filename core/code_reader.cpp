@@ -23,6 +23,9 @@ constexpr double kMinRadiusForThree = 14;  // pixels
 
 // A ring whose half-teeth differ by less than this share of the marker's contrast carries no code.
 constexpr double kMinCodeContrast = 0.2;
+// Half-teeth that scatter by more of half the code's contrast are no two colours. Codes down to 14
+// px across stay below 0.45; a square in a ring, the likest thing that is none, has 1.2.
+constexpr double kMaxSpread = 0.75;
 // Spread of a half-tooth's level about its model that no residual may fall below, share of the
 // code's contrast: interpolation, print and light are never perfect.
 constexpr double kMinSpread = 0.06;
@@ -133,7 +136,7 @@ bool CodeReader::fit_half_teeth(double phase, double contrast) {
   }
   const double floor = kMinSpread * 2 * teeth_.half_contrast;
   teeth_.sigma = std::sqrt(squares / std::max(1, half_count - unknowns) + floor * floor);
-  return true;
+  return teeth_.sigma <= kMaxSpread * teeth_.half_contrast;
 }
 
 void CodeReader::decode(CodeReading& reading, int& start_half) {
@@ -178,13 +181,15 @@ void CodeReader::decode(CodeReading& reading, int& start_half) {
       const auto consider = [&](std::uint32_t candidate, double candidate_score) {
         if (pass == 0 && candidate_score <= best.score) return;
         const auto decoded = code_.decode(candidate);
-        if (!decoded) return;
         if (pass == 0) {
-          best = {candidate_score, decoded->id, (parity + 2 * decoded->rotation) % half_count};
+          if (decoded) {
+            best = {candidate_score, decoded->id, (parity + 2 * decoded->rotation) % half_count};
+          }
         } else {
+          // Words outside the set count as well: what reads most like one of them is no id.
           const double weight = std::exp(candidate_score - reference);
           total += weight;
-          if (decoded->id == best.id) reading.probability += weight;
+          if (decoded && decoded->id == best.id) reading.probability += weight;
         }
       };
       consider(word, score);

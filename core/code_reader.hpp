@@ -31,8 +31,8 @@ class CodeReader {
  public:
   CodeReader(int bits, int hamming) : code_(bits, hamming) {}
 
-  // Nothing when the ring leaves the image or carries no code (a plain marker). `mean_radius_px`:
-  // of the outer outline.
+  // Nothing when the ring leaves the image or does not look like a code of any id.
+  // `mean_radius_px`: of the outer outline.
   std::optional<CodeReading> read(const LumaView& frame, const PlaneProjection& projection,
                                   double mean_radius_px, const Levels& levels);
 

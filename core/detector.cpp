@@ -40,6 +40,7 @@ std::span<const Marker> Detector::detect(const LumaView& frame) {
                        static_cast<std::size_t>(impl_->parameters.max_markers), impl_->segments);
   for (const Segment& segment : impl_->segments) {
     const Observation observation = impl_->observer.observe(frame, segment);
+    if (!observation.plausible) continue;
     Marker marker = impl_->observer.to_marker(observation, 0);
     if (observation.id_probability >= impl_->parameters.min_id_probability) {
       marker.id = observation.id;

@@ -7,12 +7,40 @@ namespace roundel {
 
 namespace {
 
-// A row through the bright centre is as wide as the marker there; a marker tilted by 75 degrees and
-// lying across is four times as high.
-constexpr double kMaxBoxToExtent = 4.5;
+// An ellipse's box is wider than its chord through the middle when it lies askew: by 2.05 for a
+// marker tilted by 75 degrees at the worst angle. Chords a little off the middle are shorter.
+constexpr double kMaxBoxToChord = 2.4;
 
 // Edges must stand out of the noise of an averaged 2 x 2 block over some fifty pixels.
 constexpr double kNoiseFactor = 3.5;
+
+// Pixels of bright and of the dark after it, going from a bright pixel along a column; dark is 0
+// when no bright pixel ends it within `reach` pixels.
+struct ColumnWalk {
+  int bright = 0, dark = 0;
+};
+
+ColumnWalk walk_column(const LumaView& frame, int u, int v, int step, int threshold, int reach) {
+  const int length = std::min(reach, step > 0 ? frame.height - 1 - v : v);
+  const std::uint8_t* p = frame.row(v) + u * frame.pixel_stride;
+  const std::ptrdiff_t stride = step * frame.row_stride;
+  int i = 0;
+  while (i < length && p[i * stride] >= threshold) ++i;
+  const int bright = i;
+  while (i < length && p[i * stride] < threshold) ++i;
+  return {bright, i < length ? i - bright : 0};
+}
+
+// A seed's row looks like a marker's; so must the column through the middle of its bright run,
+// before anything is filled: this turns down most of what is bright on a darker floor. Returns the
+// length of the column from outer edge to outer edge, 0 when it does not fit.
+int fitting_column(const LumaView& frame, const Seed& seed, int reach) {
+  const ColumnWalk up = walk_column(frame, seed.bright_u, seed.v, -1, seed.threshold, reach);
+  if (up.dark == 0) return 0;
+  const ColumnWalk down = walk_column(frame, seed.bright_u, seed.v, 1, seed.threshold, reach);
+  if (!is_marker_pattern(up.dark, up.bright + down.bright, down.dark)) return 0;
+  return up.dark + up.bright + down.bright + down.dark;
+}
 
 }  // namespace
 
@@ -56,10 +84,17 @@ void MarkerSearch::claim_segment() {
   }
 }
 
-Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold, int max_extent) {
-  const int limit = std::min(parameters_.max_diameter_px, max_extent);
-  const Verdict verdict = finder_.examine(frame, u, v, threshold, {limit, limit});
-  if (verdict == Verdict::kAccepted) claim_segment();
+Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold,
+                              const RegionFiller::Limits& limits) {
+  const Verdict verdict = finder_.examine(frame, u, v, threshold, limits);
+  if (verdict != Verdict::kAccepted) return verdict;
+  // A blurred edge pixel just outside of a claimed marker leads into it again.
+  const Ellipse& ellipse = finder_.segment().ellipse;
+  if (is_claimed(static_cast<int>(std::lround(ellipse.u)),
+                 static_cast<int>(std::lround(ellipse.v)))) {
+    return Verdict::kKnown;
+  }
+  claim_segment();
   return verdict;
 }
 
@@ -72,8 +107,11 @@ void MarkerSearch::search(const LumaView& frame, const Box& area, int spacing, s
          scanner_.scan(frame, v, u0, u1, contrast_, parameters_.max_diameter_px)) {
       if (found.size() >= limit) return;
       if (is_claimed(seed.u, v) || is_claimed(seed.bright_u, v)) continue;
-      const int max_extent = static_cast<int>(kMaxBoxToExtent * seed.extent) + 4;
-      if (examine(frame, seed.u, v, seed.threshold, max_extent) == Verdict::kAccepted) {
+      const int column = fitting_column(frame, seed, parameters_.max_diameter_px);
+      if (column == 0) continue;
+      const RegionFiller::Limits limits{static_cast<int>(kMaxBoxToChord * seed.extent) + 4,
+                                        static_cast<int>(kMaxBoxToChord * column) + 4};
+      if (examine(frame, seed.u, v, seed.threshold, limits) == Verdict::kAccepted) {
         found.push_back(finder_.segment());
       }
     }

@@ -22,7 +22,8 @@ class MarkerSearch {
   void begin(const LumaView& frame);
 
   // Grows a segment at a known place; a success claims its area.
-  Verdict examine(const LumaView& frame, int u, int v, int threshold, int max_extent);
+  Verdict examine(const LumaView& frame, int u, int v, int threshold,
+                  const RegionFiller::Limits& limits);
   const Segment& segment() const { return finder_.segment(); }
 
   // Whether a pixel lies in a marker found in this frame.

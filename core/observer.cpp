@@ -33,6 +33,24 @@ void check(const DetectorParameters& p) {
           "min_contrast must be 5 to 200 grey levels");
 }
 
+// Whether the bright part is the disc of a plain marker: an ellipse shaped like the outer one and
+// of a printed ratio. Or so small that the pixel grid hides what it is.
+bool may_be_plain_centre(const Segment& segment) {
+  const Ellipse& inner = segment.inner;
+  const double ratio = std::sqrt(segment.bright_share);
+  constexpr double kTooSmallToTell = 3;  // pixels
+  if (inner.b < kTooSmallToTell) return true;
+  const double grid = 0.5 / inner.b;  // half a pixel, as a share of the smaller axis
+  if (ratio < kPlainInnerRatioMin - 0.05 - grid || ratio > kPlainInnerRatioMax + 0.05) return false;
+  const double ellipse_area = std::numbers::pi * inner.a * inner.b;
+  const double area =
+      segment.bright_share * std::numbers::pi * segment.ellipse.a * segment.ellipse.b;
+  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.1 * grid) return false;
+  const double tolerance = 0.06 + grid;
+  return std::abs(inner.a / (ratio * segment.ellipse.a) - 1) < tolerance &&
+         std::abs(inner.b / (ratio * segment.ellipse.b) - 1) < tolerance;
+}
+
 double mean_radius(const Ellipse& ellipse) {
   return std::sqrt(ellipse.a * ellipse.b);
 }
@@ -44,7 +62,7 @@ double plain_log_likelihood(const Segment& segment, double inner_area_share,
                             const Eigen::Vector2d& projected_centre) {
   const Eigen::Vector2d outer(segment.ellipse.u, segment.ellipse.v);
   const Eigen::Vector2d expected = projected_centre + inner_area_share * (outer - projected_centre);
-  const Eigen::Vector2d seen(segment.bright_u, segment.bright_v);
+  const Eigen::Vector2d seen(segment.inner.u, segment.inner.v);
   const double inner_radius = std::sqrt(inner_area_share) * mean_radius(segment.ellipse);
   // A centroid averages the noise of its outline's pixels, about pi r of them in each direction.
   const double variance = kOutlineNoise * kOutlineNoise / (std::numbers::pi * inner_radius);
@@ -121,6 +139,7 @@ Observation Observer::observe(const LumaView& frame, const Segment& segment) {
       observation.id_probability = reading->probability;
     }
   }
+  observation.plausible = observation.coded || may_be_plain_centre(segment);
   return observation;
 }
 

@@ -21,10 +21,11 @@ struct PoseHypothesis {
 // A marker as one frame shows it, before a track adds what earlier frames showed.
 struct Observation {
   Segment segment;
-  int id = -1;                          // read in this frame; -1: none or not readable
-  double id_probability = 0;            // given this frame alone
-  bool coded = false;                   // a code ring was seen, readable or not
-  int pose_count = 0;                   // 0 without a camera model, else 2
+  int id = -1;                // read in this frame; -1: none or not readable
+  double id_probability = 0;  // given this frame alone
+  bool coded = false;         // a code ring was seen, whether or not its id is in the set
+  bool plausible = false;  // what lies inside is a code, a plain marker's disc or too small to tell
+  int pose_count = 0;      // 0 without a camera model, else 2
   std::array<PoseHypothesis, 2> poses;  // the likelier one first
 };
 

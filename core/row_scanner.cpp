@@ -18,14 +18,14 @@ constexpr double kMinDark = 0.12, kMaxDark = 3.5;
 constexpr double kMaxDarkImbalance = 6.0;
 constexpr int kPixelSlack = 3;
 
+}  // namespace
+
 bool is_marker_pattern(int left, int bright, int right) {
   if (bright < 2) return false;
   const auto [shorter, longer] = std::minmax(left, right);
   return shorter >= kMinDark * bright && longer <= kMaxDark * bright + kPixelSlack &&
          longer <= kMaxDarkImbalance * shorter + kPixelSlack;
 }
-
-}  // namespace
 
 double estimate_noise(const LumaView& frame) {
   std::array<int, 256> histogram{};

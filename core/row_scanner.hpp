@@ -39,6 +39,10 @@ class RowScanner {
   std::vector<Seed> seeds_;
 };
 
+// Whether dark, bright and dark runs of these lengths (pixels) may lie across a marker's centre.
+// The proportions hold along any line, however the marker is tilted.
+bool is_marker_pattern(int dark_before, int bright, int dark_after);
+
 // Standard deviation of the frame's pixel noise, grey levels, from differences of neighbours on a
 // coarse grid (their median, so that edges do not count).
 double estimate_noise(const LumaView& frame);

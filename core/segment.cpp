@@ -141,16 +141,14 @@ Verdict SegmentFinder::examine_once(const LumaView& frame, int u, int v, int thr
 
   const auto ellipse = moment_ellipse(region.filled, region.origin_u, region.origin_v);
   if (!ellipse) return Verdict::kNotElliptic;
-  const double bright_u =
-      region.origin_u + static_cast<double>(bright.su) / static_cast<double>(bright.n);
-  const double bright_v =
-      region.origin_v + static_cast<double>(bright.sv) / static_cast<double>(bright.n);
+  const auto inner = moment_ellipse(bright, region.origin_u, region.origin_v);
+  if (!inner) return Verdict::kNotElliptic;
   const auto off_centre = [&](double offset, int extent) {
     return std::abs(offset) >
            parameters_.concentricity_tolerance_px + parameters_.concentricity_tolerance * extent;
   };
-  if (off_centre(bright_u - ellipse->u, region.box.width()) ||
-      off_centre(bright_v - ellipse->v, region.box.height())) {
+  if (off_centre(inner->u - ellipse->u, region.box.width()) ||
+      off_centre(inner->v - ellipse->v, region.box.height())) {
     return Verdict::kNotConcentric;
   }
 
@@ -164,8 +162,7 @@ Verdict SegmentFinder::examine_once(const LumaView& frame, int u, int v, int thr
   if (!levels) return Verdict::kRingNotClosed;
 
   segment_.ellipse = *ellipse;
-  segment_.bright_u = bright_u;
-  segment_.bright_v = bright_v;
+  segment_.inner = *inner;
   segment_.bright_share = static_cast<double>(bright.n) / filled_area;
   segment_.levels = *levels;
   segment_.threshold = threshold;

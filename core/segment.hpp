@@ -20,9 +20,8 @@ struct Levels {
 
 // A dark ring around something bright: what passed the tests of [P] section 3.
 struct Segment {
-  Ellipse ellipse;      // of the outer outline
-  double bright_u = 0;  // centroid of the bright part inside, pixels
-  double bright_v = 0;
+  Ellipse ellipse;          // of the outer outline
+  Ellipse inner;            // moment ellipse of the bright part inside
   double bright_share = 0;  // of the bright part's area in the whole outline's
   Levels levels;
   int threshold = 0;  // luma below it is dark
@@ -40,8 +39,9 @@ enum class Verdict {
   kCentreNotBright,
   kAreaRatio,  // dark to bright area
   kNotConcentric,
-  kNotElliptic,   // area of the moment ellipse against pixels
-  kRingNotClosed  // not dark all around, or not darker than the margin
+  kNotElliptic,    // area of the moment ellipse against pixels
+  kRingNotClosed,  // not dark all around, or not darker than the margin
+  kKnown           // found before in this frame (MarkerSearch)
 };
 
 // Grows a candidate from one dark pixel and tests it, from cheap to dear, leaving at the first

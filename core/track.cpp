@@ -33,6 +33,7 @@ void Track::update(const Observation& seen_now, int id_count) {
   threshold = seen_now.segment.threshold;
   missed = 0;
   seen = true;
+  implausible = seen_now.plausible ? 0 : implausible + 1;
   evidence.add(seen_now.id, seen_now.id_probability, id_count);
   if (seen_now.pose_count == 0) return;
 

@@ -14,7 +14,8 @@ struct Track {
   Ellipse ellipse;          // where it was seen last
   int threshold = 0;
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  // pixels a frame
-  int missed = 0;  // frames since it was seen; 0: seen in this frame
+  int missed = 0;       // frames since it was seen; 0: seen in this frame
+  int implausible = 0;  // frames in a row in which it did not look like a marker inside
   IdEvidence evidence;
 
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of the pose published last; zero before

@@ -13,6 +13,7 @@ namespace roundel {
 namespace {
 
 constexpr int kMaxMissed = 30;       // frames; then a track ends
+constexpr int kMaxImplausible = 15;  // frames; a blurred or half covered marker recovers
 constexpr int kNewcomerFrames = 5;   // a full search is spread over as many frames
 constexpr double kLocalReach = 2.0;  // of the search around an expected place, in diameters
 constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
@@ -75,7 +76,7 @@ bool Tracker::Impl::follow(const LumaView& frame, const Track& track) {
     const int v = static_cast<int>(std::lround(expected.v + side * expected.a * sine));
     if (!frame.contains(u, v) || search.is_claimed(u, v)) continue;
     const int threshold = static_cast<int>(std::lround(levels->middle()));
-    if (search.examine(frame, u, v, threshold, extent) == Verdict::kAccepted) {
+    if (search.examine(frame, u, v, threshold, {extent, extent}) == Verdict::kAccepted) {
       return similar_size(search.segment().ellipse, track.ellipse);
     }
   }
@@ -158,6 +159,8 @@ void Tracker::Impl::adopt(const Observation& observation) {
     track->update(observation, observer.id_count());
     return;
   }
+  // A track may be blurred or half covered for a while; a newcomer has to look like a marker.
+  if (!observation.plausible) return;
   if (tracks.size() >= static_cast<std::size_t>(parameters.max_markers)) return;
   Track& track = tracks.emplace_back();
   track.number = next_number++;
@@ -221,7 +224,9 @@ std::span<const Marker> Tracker::track(const LumaView& frame) {
   self.find_newcomers(frame);
   for (const Segment& segment : self.found) self.adopt(self.observer.observe(frame, segment));
   self.exchange_mistaken();
-  std::erase_if(self.tracks, [](const Track& track) { return track.missed > kMaxMissed; });
+  std::erase_if(self.tracks, [](const Track& track) {
+    return track.missed > kMaxMissed || track.implausible > kMaxImplausible;
+  });
   self.publish();
   return self.markers;
 }
