@@ -62,9 +62,8 @@ CameraModel arena_camera(const ArenaOptions& options, const Pose& arena_in_camer
   camera.cy = 0.5 * (camera.height - 1);
   camera.distortion = kWebcam;
   double scale = std::min(options.image_width / 1920.0, options.image_height / 1080.0);
-  constexpr double kShortest = 0.3;  // a wider lens than this is no webcam's
-  const double shortest = kShortest * scale;
-  for (; scale > shortest; scale *= 0.99) {
+  constexpr int kTries = 120;  // down to a third: a shorter lens than that is no webcam's
+  for (int attempt = 0; attempt < kTries; ++attempt, scale *= 0.99) {
     camera.fx = kFocalX * scale;
     camera.fy = kFocalY * scale;
     if (shows_all(camera, options, arena_in_camera)) return camera;

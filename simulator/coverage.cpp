@@ -76,16 +76,14 @@ void CoverageGrid::segment(float* row, double x0, double x1, double height) cons
     row[0] += static_cast<float>(height);
     return;
   }
-  const double first_cell = std::floor(left);
-  if (left >= 0 && right <= first_cell + 1) {
-    const double share = height * (first_cell + 1 - 0.5 * (left + right));
-    float* cell = row + static_cast<int>(first_cell);
-    cell[0] += static_cast<float>(share);
-    cell[1] += static_cast<float>(height - share);
+  const int begin = std::max(0, static_cast<int>(left));
+  if (left >= 0 && right <= begin + 1) {  // the common case: within one cell
+    const double share = height * (begin + 1 - 0.5 * (left + right));
+    row[begin] += static_cast<float>(share);
+    row[begin + 1] += static_cast<float>(height - share);
     return;
   }
-  const int begin = std::max(0, static_cast<int>(first_cell));
-  const int end = std::min(width_ - 1, static_cast<int>(std::floor(right)));
+  const int end = std::min(width_ - 1, static_cast<int>(right));
   const double scale = height / (right - left);
   double previous = 0;
   for (int i = begin; i <= end; ++i) {

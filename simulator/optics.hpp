@@ -19,6 +19,9 @@ class Optics {
   void filter(const std::vector<float>& fine, int width, int height, std::vector<float>& pixels);
 
  private:
+  template <int Columns>
+  void sum_down(const float* top, int stride, float* sums) const;
+
   int factor_ = 1;
   int margin_ = 0;
   std::vector<float> taps_;

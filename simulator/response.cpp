@@ -42,7 +42,8 @@ void Response::encode(const float* light, std::int16_t* grey, int count) const {
   if (linear_) {
     for (int i = 0; i < count; ++i) {
       const float clipped = std::min(std::max(light[i], 0.0F), kWhite);
-      grey[i] = static_cast<std::int16_t>(clipped * kScale + 0.5F);
+      const float rounded = clipped * kScale + 0.5F;
+      grey[i] = static_cast<std::int16_t>(rounded);
     }
     return;
   }
@@ -53,7 +54,8 @@ void Response::encode(const float* light, std::int16_t* grey, int count) const {
     const float low = table_[static_cast<std::size_t>(cell)];
     const float high = table_[static_cast<std::size_t>(cell) + 1];
     const float value = low + (high - low) * (place - static_cast<float>(cell));
-    grey[i] = static_cast<std::int16_t>(value * kScale + 0.5F);
+    const float rounded = value * kScale + 0.5F;
+    grey[i] = static_cast<std::int16_t>(rounded);
   }
 }
 

@@ -12,6 +12,7 @@ namespace roundel {
 namespace {
 
 constexpr double kAcceleration = 0.6;      // m/s^2
+constexpr double kBraking = 2.0;           // m/s^2
 constexpr double kTurnAcceleration = 8.0;  // rad/s^2
 constexpr double kGoalReached = 0.10;      // metres
 constexpr double kGoalPatience = 12.0;     // seconds
@@ -85,10 +86,12 @@ void Swarm::place(std::uint64_t seed) {
     std::vector<Eigen::Vector2d> slots;
     const double pitch = 2 * r + 1.5 * min_gap_m();
     const double row_pitch = pitch * std::sqrt(0.75);
-    int row = 0;
-    for (double y = r; y <= options_.width_m - r; y += row_pitch, ++row) {
-      for (double x = r + (row % 2) * 0.5 * pitch; x <= options_.length_m - r; x += pitch) {
-        if (free_at({x, y}, 0, 0)) slots.emplace_back(x, y);
+    const int rows = static_cast<int>((options_.width_m - 2 * r) / row_pitch) + 1;
+    const int columns = static_cast<int>((options_.length_m - 2 * r) / pitch) + 1;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const Eigen::Vector2d slot(r + (column + 0.5 * (row % 2)) * pitch, r + row * row_pitch);
+        if (free_at(slot, 0, 0)) slots.push_back(slot);
       }
     }
     if (slots.size() < count) {
@@ -121,8 +124,9 @@ void Swarm::new_goal(std::size_t i) {
   const double r = options_.radius_m;
   robot.goal = {random.uniform(r, options_.length_m - r), random.uniform(r, options_.width_m - r)};
   robot.goal_time_s = kGoalPatience;
-  if (options_.close_passes && robots_.size() > 1) {
-    // Beyond another robot, so that the way there leads past it.
+  robot.seeks = options_.close_passes && robots_.size() > 1 && !robot.seeks;
+  if (robot.seeks) {
+    // Beyond another robot, so that the way there leads past it; then away again.
     const auto other =
         (i + 1 + random.below(static_cast<std::uint32_t>(robots_.size() - 1))) % robots_.size();
     const Eigen::Vector2d beyond = robots_[other].position - robot.position;
@@ -186,9 +190,8 @@ void Swarm::drive(std::size_t i, double dt) {
   robot.heading = turned(robot.heading, robot.turn_rate * dt);
 
   const double wanted = std::min(limit, options_.max_speed * std::max(0.0, 0.2 + 0.8 * ahead));
-  const double speed_step = kAcceleration * dt;
-  robot.speed =
-      std::max(0.0, robot.speed + std::clamp(wanted - robot.speed, -speed_step, speed_step));
+  const double change = std::clamp(wanted - robot.speed, -kBraking * dt, kAcceleration * dt);
+  robot.speed = std::max(0.0, robot.speed + change);
   const Eigen::Vector2d next = robot.position + robot.heading * (robot.speed * dt);
   if (free_at(next, i, robots_.size())) {
     robot.position = next;

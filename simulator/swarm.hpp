@@ -14,6 +14,7 @@ struct Robot {
   double turn_rate = 0;                                // rad/s, counter-clockwise
   Eigen::Vector2d goal = Eigen::Vector2d::Zero();
   double goal_time_s = 0;  // until it gives up on the goal
+  bool seeks = false;      // its goal leads close past another robot
 };
 
 struct SwarmOptions {

@@ -22,7 +22,13 @@ class OutlineBuilder {
       outline_.valid = false;
     }
   }
-  const ImageOutline& outline() const { return outline_; }
+  ImageOutline outline() const {
+    ImageOutline done = outline_;
+    if (!done.valid) return done;
+    for (const auto& p : done.corners) done.middle += p / ImageOutline::kCorners;
+    for (const auto& p : done.corners) done.reach = std::max(done.reach, (p - done.middle).norm());
+    return done;
+  }
 
  private:
   const CameraModel& camera_;
@@ -81,16 +87,7 @@ bool inside_image(const ImageOutline& outline, int width, int height, double mar
 
 bool closer_than(const ImageOutline& a, const ImageOutline& b, double margin) {
   if (!a.valid || !b.valid) return false;
-  const auto middle_and_reach = [](const ImageOutline& o) {
-    Eigen::Vector2d middle(0, 0);
-    for (const auto& p : o.corners) middle += p / ImageOutline::kCorners;
-    double reach = 0;
-    for (const auto& p : o.corners) reach = std::max(reach, (p - middle).norm());
-    return std::pair{middle, reach};
-  };
-  const auto [middle_a, reach_a] = middle_and_reach(a);
-  const auto [middle_b, reach_b] = middle_and_reach(b);
-  if ((middle_a - middle_b).norm() > reach_a + reach_b + margin) return false;
+  if ((a.middle - b.middle).norm() > a.reach + b.reach + margin) return false;
   return std::max(largest_gap(a, b), largest_gap(b, a)) < margin;
 }
 

@@ -13,7 +13,9 @@ namespace roundel {
 struct ImageOutline {
   static constexpr int kCorners = 32;
   std::array<Eigen::Vector2d, kCorners> corners;
-  bool valid = false;  // false if some of it does not project
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // of the corners
+  double reach = 0;                                  // largest distance of a corner from it
+  bool valid = false;                                // false if some of it does not project
 };
 
 ImageOutline disc_outline(const CameraModel& camera, const Pose& pose, double radius_m);
