@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/temporary_folder.hpp"
+#include "tests/temporary_directory.hpp"
 
 namespace roundel {
 namespace {
@@ -51,8 +51,8 @@ bool contains(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("frames written as y4m come back unchanged") {
-  const TemporaryFolder folder;
-  const std::string path = folder.path("a.y4m");
+  const TemporaryDirectory folder;
+  const std::string path = folder.file("a.y4m");
   Y4mWriter writer(path, 31, 17, 25);
   for (unsigned i = 0; i < 5; ++i) {
     writer.write(random_picture(31, 17, i).view());
@@ -72,7 +72,7 @@ TEST_CASE("frames written as y4m come back unchanged") {
 }
 
 TEST_CASE("the luma is taken and the chroma skipped in every colour space of 8 bits") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const GreyImage first = random_picture(5, 3, 1);  // odd sides: chroma planes are rounded up
   const GreyImage second = random_picture(5, 3, 2);
   const std::vector<std::pair<std::string, std::size_t>> spaces = {
@@ -91,11 +91,11 @@ TEST_CASE("the luma is taken and the chroma skipped in every colour space of 8 b
 }
 
 TEST_CASE("a wrong y4m header is refused with the reason") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const auto error = [&](const std::string& contents) {
     return video_error(folder.write("a.y4m", contents));
   };
-  CHECK(contains(video_error(folder.path("none.y4m")), "none.y4m can't be opened: No such file"));
+  CHECK(contains(video_error(folder.file("none.y4m")), "none.y4m can't be opened: No such file"));
   CHECK(contains(error(""), "a.y4m is empty"));
   CHECK(contains(error("\x89PNG\r\n..."), "is not y4m video: it does not start with YUV4MPEG2"));
   CHECK(contains(error("YUV4MPEG21 W5 H3\n"), "does not start with YUV4MPEG2"));
@@ -111,7 +111,7 @@ TEST_CASE("a wrong y4m header is refused with the reason") {
 }
 
 TEST_CASE("y4m cut short at any byte names the frame that is missing") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const GreyImage image = random_picture(5, 3, 1);
   const std::string header = "YUV4MPEG2 W5 H3 F30:1 C420\n";
   const std::string frame = "FRAME\n" + luma(image) + std::string(12, 'c');
@@ -134,8 +134,8 @@ TEST_CASE("y4m cut short at any byte names the frame that is missing") {
 }
 
 TEST_CASE("a frame of another size is not written into a video") {
-  const TemporaryFolder folder;
-  Y4mWriter writer(folder.path("a.y4m"), 8, 8, 30);
+  const TemporaryDirectory folder;
+  Y4mWriter writer(folder.file("a.y4m"), 8, 8, 30);
   CHECK_THROWS_AS(writer.write(random_picture(8, 9, 1).view()), std::runtime_error);
 }
 

@@ -26,12 +26,12 @@ struct Picture {
 };
 
 // The picture that `roundel markers --paper none` writes, read back from its PNG.
-Picture printed(const TemporaryFolder& folder, int bits, std::uint32_t word,
+Picture printed(const TemporaryDirectory& folder, int bits, std::uint32_t word,
                   double diameter_px) {
   const PrintedMarker marker{{bits, word, 0}, "", ""};
-  write_png(folder.path("marker.png"), bare_page(kDiameterMm), diameter_px / kDiameterMm,
+  write_png(folder.file("marker.png"), bare_page(kDiameterMm), diameter_px / kDiameterMm,
             [&](cairo_t* context) { draw_bare_marker(context, marker, kDiameterMm); });
-  return {load_image(folder.path("marker.png")), diameter_px};
+  return {load_image(folder.file("marker.png")), diameter_px};
 }
 
 // The picture made smaller, to this diameter of the black disc, and turned counter-clockwise about
@@ -84,7 +84,7 @@ double turn_of(const Marker& marker) {
 }  // namespace
 
 TEST_CASE("all printed ids of 3 to 8 bits come back with id and turn, from 40 to 400 pixels") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   int read = 0;
   double worst = 0;
   for (int bits = 3; bits <= 8; ++bits) {
@@ -123,9 +123,9 @@ TEST_CASE("all printed ids of 3 to 8 bits come back with id and turn, from 40 to
 }
 
 TEST_CASE("a marker printed by the tool is found by the tool") {
-  const TemporaryFolder folder;
-  REQUIRE(run_roundel("markers --id 23 --pixels 300 -o " + folder.path("m.png")).status == 0);
-  const auto frames = json_lines(run_roundel("detect --json " + folder.path("m.png")).out);
+  const TemporaryDirectory folder;
+  REQUIRE(run_roundel("markers --id 23 --pixels 300 -o " + folder.file("m.png")).status == 0);
+  const auto frames = json_lines(run_roundel("detect --json " + folder.file("m.png")).out);
   REQUIRE(frames.size() == 1);
   const auto& markers = frames[0]["markers"];
   REQUIRE(markers.size() == 1);
@@ -137,12 +137,12 @@ TEST_CASE("a marker printed by the tool is found by the tool") {
 }
 
 TEST_CASE("a whole printed sheet is read in one picture") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   REQUIRE(
-      run_roundel("markers --bits 6 --all --diameter 0.05 --dpi 100 -o " + folder.path("sheet.png"))
+      run_roundel("markers --bits 6 --all --diameter 0.05 --dpi 100 -o " + folder.file("sheet.png"))
           .status == 0);
   const auto frames =
-      json_lines(run_roundel("detect --json --bits 6 " + folder.path("sheet.png")).out);
+      json_lines(run_roundel("detect --json --bits 6 " + folder.file("sheet.png")).out);
   REQUIRE(frames.size() == 1);
   std::vector<int> ids;
   for (const auto& marker : frames[0]["markers"]) {
