@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/error_of.hpp"
 #include "tests/sample_markers.hpp"
+#include "tests/temporary_folder.hpp"
 #include "transport/clock.hpp"
 #include "transport/lcm_url.hpp"
 
