@@ -27,7 +27,7 @@ struct Picture {
 
 // The picture that `roundel markers --paper none` writes, read back from its PNG.
 Picture printed(const TemporaryDirectory& folder, int bits, std::uint32_t word,
-                  double diameter_px) {
+                double diameter_px) {
   const PrintedMarker marker{{bits, word, 0}, "", ""};
   write_png(folder.file("marker.png"), bare_page(kDiameterMm), diameter_px / kDiameterMm,
             [&](cairo_t* context) { draw_bare_marker(context, marker, kDiameterMm); });
