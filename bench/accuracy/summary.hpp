@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/accuracy/contender.hpp"
+
+namespace roundel::bench {
+
+struct Distribution {
+  double mean = 0, median = 0, p99 = 0, worst = 0;
+};
+
+// NaN for no values.
+Distribution distribution_of(std::vector<double> values);
+
+// What one system did in one experiment. Shares are of the judged markers, flips of the found ones.
+struct Summary {
+  std::string experiment, system;
+  bool has_yaw = true, has_sigma = false;
+  int judged = 0, found = 0, unread = 0, wrong_ids = 0, missed = 0, extra = 0, flips = 0;
+  Distribution position_mm, phi, normal;  // of the found markers; radians
+
+  // Honesty of the published sigmas, flips left out: the mean over found markers and axes of
+  // (error / sigma)^2, 1 when honest; and the sigmas' own size.
+  double position_honesty = 0, rotation_honesty = 0;
+  double mean_sigma_mm = 0;  // of the position: square root of the axes' summed variances
+
+  double found_share() const { return judged > 0 ? static_cast<double>(found) / judged : 0; }
+  double flip_share() const { return found > 0 ? static_cast<double>(flips) / found : 0; }
+};
+
+Summary summarise(const Result& result);
+
+}  // namespace roundel::bench
