@@ -18,6 +18,11 @@ namespace {
 constexpr double kOutlineNoise = 0.30;
 constexpr double kToothEdgeNoise = 0.15;
 
+// How far a plain marker's edges may be shifted as a whole, pixels.
+constexpr double kPlainShiftSigma = 0.02;
+// Residuals that no noise explains, share of the contrast.
+constexpr double kModelError = 0.01;
+
 void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(what);
 }
@@ -77,6 +82,15 @@ Observer::Observer(const DetectorParameters& parameters, std::optional<CameraMod
   if (parameters.bits != 0) reader_.emplace(parameters.bits, parameters.hamming);
 }
 
+// A hypothesis on its way from the outline to the refined pose.
+struct Observer::Candidate {
+  CirclePose circle;
+  Eigen::Vector2d centre;  // of the marker, pixels
+  std::optional<CodeReading> reading;
+  Pattern pattern;
+  PoseHypothesis hypothesis;
+};
+
 void Observer::observe_with_camera(const LumaView& frame, Observation& observation) {
   const Segment& segment = observation.segment;
   const double radius_m = parameters_.diameter_m / 2;
@@ -85,42 +99,91 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
   const auto circles = circle_poses(*conic, radius_m);
   if (!circles) return;
 
-  std::array<std::optional<CodeReading>, 2> readings;
-  std::array<Eigen::Vector2d, 2> centres;
+  std::array<Candidate, 2> candidates;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Pose pose = pose_from_circle((*circles)[i], 0);
+    Candidate& candidate = candidates[i];
+    candidate.circle = (*circles)[i];
+    const Pose pose = pose_from_circle(candidate.circle, 0);
     const auto centre = camera_->project(pose.position);
     if (!centre) return;
-    centres[i] = *centre;
+    candidate.centre = *centre;
     if (reader_) {
-      readings[i] = reader_->read(frame, PlaneProjection(pose, radius_m, *camera_),
-                                  mean_radius(segment.ellipse), segment.levels);
+      candidate.reading = reader_->read(frame, PlaneProjection(pose, radius_m, *camera_),
+                                        mean_radius(segment.ellipse), segment.levels);
     }
   }
+  observation.coded = candidates[0].reading || candidates[1].reading;
   observation.pose_count = 2;
-  observation.coded = readings[0].has_value() || readings[1].has_value();
-  for (std::size_t i = 0; i < 2; ++i) {
-    PoseHypothesis& hypothesis = observation.poses[i];
+  for (Candidate& candidate : candidates) {
+    const auto& reading = candidate.reading;
+    double yaw = 0;
     if (observation.coded) {
-      const auto& reading = readings[i];
       constexpr double kNothingRead = -50;
-      hypothesis.log_likelihood =
+      candidate.hypothesis.log_likelihood =
           reading ? -0.5 * reading->edge_scatter / (kToothEdgeNoise * kToothEdgeNoise) +
                         std::log(std::max(reading->probability, 1e-9))
                   : kNothingRead;
-      hypothesis.pose =
-          pose_from_circle((*circles)[i], reading && reading->id > 0 ? reading->yaw : 0);
+      if (reading && reading->id > 0) {
+        yaw = reading->yaw;
+        candidate.pattern.kind = Pattern::Kind::kCode;
+        candidate.pattern.bits = parameters_.bits;
+        candidate.pattern.word = *reader_->code().word(reading->id);
+      }
     } else {
-      hypothesis.log_likelihood = plain_log_likelihood(segment, segment.bright_share, centres[i]);
-      hypothesis.pose = pose_from_circle((*circles)[i], 0);
+      candidate.hypothesis.log_likelihood =
+          plain_log_likelihood(segment, segment.bright_share, candidate.centre);
+      if (may_be_plain_centre(segment)) {
+        candidate.pattern.kind = Pattern::Kind::kPlain;
+        candidate.pattern.inner_ratio = std::sqrt(segment.bright_share);
+      }
+    }
+    candidate.hypothesis.pose = pose_from_circle(candidate.circle, yaw);
+  }
+  refine(frame, segment, candidates);
+  const std::size_t best =
+      candidates[1].hypothesis.log_likelihood > candidates[0].hypothesis.log_likelihood ? 1 : 0;
+  observation.poses = {candidates[best].hypothesis, candidates[1 - best].hypothesis};
+  if (candidates[best].reading && candidates[best].reading->id > 0) {
+    observation.id = candidates[best].reading->id;
+    observation.id_probability = candidates[best].reading->probability;
+  }
+}
+
+// Fits the candidates' poses to the grey values. Where both can be fitted the same way, how well
+// they explain the picture takes the place of what their teeth or bright centres said before.
+void Observer::refine(const LumaView& frame, const Segment& segment,
+                      std::array<Candidate, 2>& candidates) {
+  constexpr int kMaxSteps = 6;
+  const double radius_m = parameters_.diameter_m / 2;
+  const bool loaded = fit_.load(frame, *camera_, segment.ellipse, segment.levels, radius_m);
+  std::array<std::optional<PhotometricPose>, 2> fits;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Candidate& candidate = candidates[i];
+    PoseHypothesis& hypothesis = candidate.hypothesis;
+    EdgeLook look;
+    // Beside an unknown inner ratio, a shift of all edges looks like another distance.
+    if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
+    if (loaded) fits[i] = fit_.fit(hypothesis.pose, candidate.pattern, look, kMaxSteps);
+    if (fits[i]) {
+      hypothesis.pose = fits[i]->pose;
+      hypothesis.covariance = fits[i]->covariance;
+      if (candidate.pattern.kind != Pattern::Kind::kCode) {
+        hypothesis.pose = pose_from_circle({hypothesis.pose.position, hypothesis.pose.normal()}, 0);
+      }
+    } else {
+      EdgeNoise noise;
+      noise.outline_px = kOutlineNoise;
+      noise.yaw_rad = kToothEdgeNoise / (0.47 * mean_radius(segment.ellipse));
+      hypothesis.covariance = pose_covariance(hypothesis.pose, radius_m, *camera_, noise);
     }
   }
-  const std::size_t best =
-      observation.poses[1].log_likelihood > observation.poses[0].log_likelihood ? 1 : 0;
-  if (best == 1) std::swap(observation.poses[0], observation.poses[1]);
-  if (readings[best] && readings[best]->id > 0) {
-    observation.id = readings[best]->id;
-    observation.id_probability = readings[best]->probability;
+  if (!fits[0] || !fits[1] || candidates[0].pattern.kind != candidates[1].pattern.kind) return;
+  // Grey levels that even a perfect model would leave: what print and light do is not all known.
+  const double floor = kModelError * segment.levels.contrast();
+  const double variance = std::min(fits[0]->mean_square, fits[1]->mean_square) + floor * floor;
+  for (std::size_t i = 0; i < 2; ++i) {
+    candidates[i].hypothesis.log_likelihood =
+        -0.5 * fits[i]->mean_square * fits[i]->pixels / variance;
   }
 }
 
@@ -162,18 +225,8 @@ Marker Observer::to_marker(const Observation& observation, int pose_index) const
     marker.u = centre->x();
     marker.v = centre->y();
   }
-  EdgeNoise noise;
-  noise.outline_px = kOutlineNoise;
-  // The teeth's edges: about as many pixels of edge as the ring is wide, times their number.
-  noise.yaw_rad = std::numeric_limits<double>::infinity();
-  if (observation.coded) {
-    const double ring_radius = 0.47 * mean_radius(ellipse);
-    noise.yaw_rad = kToothEdgeNoise / ring_radius / std::sqrt(2.0 * std::max(2, parameters_.bits));
-  }
-  const PoseCovariance covariance =
-      pose_covariance(chosen.pose, parameters_.diameter_m / 2, *camera_, noise);
-  marker.sigma_position = covariance.diagonal().head<3>().cwiseSqrt();
-  marker.sigma_rotation = covariance.diagonal().tail<3>().cwiseSqrt();
+  marker.sigma_position = chosen.covariance.diagonal().head<3>().cwiseSqrt();
+  marker.sigma_rotation = chosen.covariance.diagonal().tail<3>().cwiseSqrt();
   return marker;
 }
 

@@ -8,6 +8,7 @@
 #include "core/detector_parameters.hpp"
 #include "core/luma_view.hpp"
 #include "core/marker.hpp"
+#include "core/photometric_fit.hpp"
 #include "core/segment.hpp"
 
 namespace roundel {
@@ -15,7 +16,8 @@ namespace roundel {
 // One of the two poses that a marker's outline allows, and what speaks for it.
 struct PoseHypothesis {
   Pose pose;
-  double log_likelihood = 0;  // of what was seen inside the outline; comparable within a marker
+  PoseCovariance covariance = PoseCovariance::Zero();
+  double log_likelihood = 0;  // of what was seen; comparable within a marker
 };
 
 // A marker as one frame shows it, before a track adds what earlier frames showed.
@@ -30,7 +32,7 @@ struct Observation {
 };
 
 // Turns segments into observations: two poses from the outline, the code or the bright centre read
-// under both, the likelier one first (METHOD.md sections 3 to 5).
+// under both, both refined on the grey values, the likelier one first (METHOD.md sections 3 to 6).
 class Observer {
  public:
   // Throws std::invalid_argument for parameters out of range.
@@ -46,11 +48,14 @@ class Observer {
   Marker to_marker(const Observation& observation, int pose_index) const;
 
  private:
+  struct Candidate;
   void observe_with_camera(const LumaView& frame, Observation& observation);
+  void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 
   DetectorParameters parameters_;
   std::optional<CameraModel> camera_;
   std::optional<CodeReader> reader_;  // none when bits is 0
+  PhotometricFit fit_;
 };
 
 }  // namespace roundel

@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
@@ -203,13 +204,17 @@ bool Y4mReader::next(GreyImage& frame) {
   return true;
 }
 
-Y4mWriter::Y4mWriter(const std::string& path, int width, int height, int frames_per_second)
+Y4mWriter::Y4mWriter(const std::string& path, int width, int height, double frames_per_second)
     : name_(path == "-" ? "standard output" : path),
       file_(path == "-" ? nullptr : open_file(path, "wbe")),
       stream_(file_ ? file_.get() : stdout),
       width_(width),
       height_(height) {
-  fmt::print(stream_, "{} W{} H{} F{}:1 Ip A1:1 Cmono\n", kMagic, width, height, frames_per_second);
+  // Whole rates as they are, others to a thousandth.
+  const bool whole = frames_per_second == std::floor(frames_per_second);
+  const std::int64_t base = whole ? 1 : 1000;
+  fmt::print(stream_, "{} W{} H{} F{}:{} Ip A1:1 Cmono\n", kMagic, width, height,
+             std::llround(frames_per_second * static_cast<double>(base)), base);
 }
 
 void Y4mWriter::write(const LumaView& frame) {

@@ -50,7 +50,7 @@ class Y4mReader {
 class Y4mWriter {
  public:
   // Opens the file ("-": standard output) and writes the header.
-  Y4mWriter(const std::string& path, int width, int height, int frames_per_second);
+  Y4mWriter(const std::string& path, int width, int height, double frames_per_second);
 
   // The frame must have the size given.
   void write(const LumaView& frame);

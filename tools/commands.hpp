@@ -12,6 +12,9 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void add_detect(CLI::App& app);
+void add_track(CLI::App& app);
+void add_simulate(CLI::App& app);
 void add_markers(CLI::App& app);
 
 }  // namespace roundel

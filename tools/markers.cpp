@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -27,7 +28,7 @@ struct MarkersOptions {
   int hamming = 1;
   std::string ids;
   bool all = false;
-  double plain_ratio = 0;  // 0: WhyCode
+  std::optional<double> plain_ratio;
   int copies = 1;
   double diameter_m = kDefaultDiameter;
   std::string paper = "A4";
@@ -53,15 +54,15 @@ PrintedMarker code_marker(const NecklaceCode& code, int id) {
 
 std::vector<PrintedMarker> chosen_markers(const MarkersOptions& options) {
   std::vector<PrintedMarker> markers;
-  if (options.plain_ratio > 0) {
-    if (options.plain_ratio < kPlainInnerRatioMin || options.plain_ratio > kPlainInnerRatioMax) {
+  if (options.plain_ratio) {
+    const double ratio = *options.plain_ratio;
+    if (!(ratio >= kPlainInnerRatioMin && ratio <= kPlainInnerRatioMax)) {
       throw UsageError(
           fmt::format("a plain marker's inner diameter is {:.2f} to {:.2f} of the "
                       "outer one, not {:.4g}",
-                      kPlainInnerRatioMin, kPlainInnerRatioMax, options.plain_ratio));
+                      kPlainInnerRatioMin, kPlainInnerRatioMax, ratio));
     }
-    markers.push_back(
-        {{0, 0, options.plain_ratio}, "plain", fmt::format("ratio {:.3f}", options.plain_ratio)});
+    markers.push_back({{0, 0, ratio}, "plain", fmt::format("ratio {:.3f}", ratio)});
   } else {
     const NecklaceCode code(options.bits, options.hamming);
     const std::string ids = options.all ? fmt::format("1-{}", code.id_count()) : options.ids;

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/detector_parameters.hpp"
+
+namespace roundel {
+
+// What the user sets, one struct a section of roundel.yaml, where every key is explained. These
+// defaults are those of the embedded file (tested); fields.cpp has names and ranges.
+
+enum class SourceKind { kSimulator, kFiles };
+
+struct SimulatorSettings {
+  int width = 1920, height = 1080;  // pixels
+  double frame_rate = 30;           // frames a second
+  int robots = 12;
+  bool corner_markers = true;  // four markers in the arena's corners
+  int seed = 1;
+  double noise = 3;                          // grey levels, one standard deviation
+  double blur = 0.7;                         // pixels, one standard deviation
+  double exposure = 0.005;                   // seconds
+  bool clutter = true;                       // things on the floor, some of them much like markers
+  double arena_length = 3, arena_width = 2;  // metres, the rectangle of the corner markers
+  double camera_height = 3;                  // metres above the floor
+};
+
+struct FilesSettings {
+  std::vector<std::string> paths;
+  double frame_rate = 30;  // frames a second; 0: as fast as they are tracked
+  bool loop = false;
+};
+
+struct CameraSettings {
+  std::string name = "camera";
+  std::string calibration;  // path; empty: none (the simulator knows its own lens)
+};
+
+struct LcmSettings {
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  std::string channel = "ROUNDEL";  // prefix of all channels
+  bool per_marker = false;
+  int max_datagram = 1400;  // bytes
+};
+
+struct Configuration {
+  SourceKind source = SourceKind::kSimulator;
+  SimulatorSettings simulator;
+  FilesSettings files;
+  CameraSettings camera;
+  DetectorParameters detector;  // sections marker and detector
+  LcmSettings lcm;
+};
+
+}  // namespace roundel

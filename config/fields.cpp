@@ -1,0 +1,145 @@
+#include "config/fields.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+
+namespace roundel {
+namespace {
+
+// The address of a member, as a function without state: FIELD(lcm.url).
+#define ROUNDEL_TARGET(member) [](Configuration& c) -> FieldTarget { return &c.member; }
+
+bool bits_exist(FieldTarget value) {
+  return *std::get<int*>(value) != 1;
+}
+
+bool is_channel(FieldTarget value) {
+  for (const char c : *std::get<std::string*>(value)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != '/') {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_printable(FieldTarget value) {
+  for (const char c : *std::get<std::string*>(value)) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
+  }
+  return true;
+}
+
+constexpr std::array kFields = {
+    Field{"source", ROUNDEL_TARGET(source)},
+
+    Field{"simulator.width", ROUNDEL_TARGET(simulator.width), 64, 8192},
+    Field{"simulator.height", ROUNDEL_TARGET(simulator.height), 64, 8192},
+    Field{"simulator.frame_rate", ROUNDEL_TARGET(simulator.frame_rate), 0.1, 1000},
+    Field{"simulator.robots", ROUNDEL_TARGET(simulator.robots), 0, 500},
+    Field{"simulator.corner_markers", ROUNDEL_TARGET(simulator.corner_markers)},
+    Field{"simulator.seed", ROUNDEL_TARGET(simulator.seed), 0, 2147483647},
+    Field{"simulator.noise", ROUNDEL_TARGET(simulator.noise), 0, 60},
+    Field{"simulator.blur", ROUNDEL_TARGET(simulator.blur), 0, 10},
+    Field{"simulator.exposure", ROUNDEL_TARGET(simulator.exposure), 0, 0.1},
+    Field{"simulator.clutter", ROUNDEL_TARGET(simulator.clutter)},
+    Field{"simulator.arena_length", ROUNDEL_TARGET(simulator.arena_length), 0.1, 100},
+    Field{"simulator.arena_width", ROUNDEL_TARGET(simulator.arena_width), 0.1, 100},
+    Field{"simulator.camera_height", ROUNDEL_TARGET(simulator.camera_height), 0.1, 100},
+
+    Field{"files.paths", ROUNDEL_TARGET(files.paths)},
+    Field{"files.frame_rate", ROUNDEL_TARGET(files.frame_rate), 0, 1000},
+    Field{"files.loop", ROUNDEL_TARGET(files.loop)},
+
+    Field{"camera.name", ROUNDEL_TARGET(camera.name), 1, 64, is_printable,
+          "text of 1 to 64 printable characters"},
+    Field{"camera.calibration", ROUNDEL_TARGET(camera.calibration), 0, 4096},
+
+    Field{"marker.diameter", ROUNDEL_TARGET(detector.diameter_m), 0.001, 10},
+    Field{"marker.bits", ROUNDEL_TARGET(detector.bits), 0, kMaxBits, bits_exist,
+          "0 (plain WhyCon markers), or 2 to 16"},
+    Field{"marker.hamming", ROUNDEL_TARGET(detector.hamming), 1, kMaxHamming},
+
+    Field{"detector.max_markers", ROUNDEL_TARGET(detector.max_markers), 1, 10000},
+    Field{"detector.min_diameter_px", ROUNDEL_TARGET(detector.min_diameter_px), 6, 8192},
+    Field{"detector.max_diameter_px", ROUNDEL_TARGET(detector.max_diameter_px), 6, 8192},
+    Field{"detector.min_contrast", ROUNDEL_TARGET(detector.min_contrast), 5, 200},
+    Field{"detector.circularity_tolerance", ROUNDEL_TARGET(detector.circularity_tolerance), 0, 1},
+    Field{"detector.area_ratio_tolerance", ROUNDEL_TARGET(detector.area_ratio_tolerance), 0, 10},
+    Field{"detector.concentricity_tolerance", ROUNDEL_TARGET(detector.concentricity_tolerance), 0,
+          1},
+    Field{"detector.concentricity_tolerance_px",
+          ROUNDEL_TARGET(detector.concentricity_tolerance_px), 0, 100},
+    Field{"detector.min_id_probability", ROUNDEL_TARGET(detector.min_id_probability), 0, 1},
+
+    Field{"lcm.url", ROUNDEL_TARGET(lcm.url), 1, 1000},
+    Field{"lcm.channel", ROUNDEL_TARGET(lcm.channel), 1, 40, is_channel,
+          "1 to 40 of the characters A-Z a-z 0-9 _ - /"},
+    Field{"lcm.per_marker", ROUNDEL_TARGET(lcm.per_marker)},
+    Field{"lcm.max_datagram", ROUNDEL_TARGET(lcm.max_datagram), 512, 65000},
+};
+
+#undef ROUNDEL_TARGET
+
+struct Words {
+  const Field& field;
+  std::string operator()(const bool*) const { return "true, false"; }
+  std::string operator()(const int*) const {
+    return fmt::format("a whole number from {} to {}", field.min, field.max);
+  }
+  std::string operator()(const double*) const {
+    return fmt::format("a number from {} to {}", field.min, field.max);
+  }
+  std::string operator()(const std::string*) const {
+    return fmt::format("text of {} to {} characters", field.min, field.max);
+  }
+  std::string operator()(const std::vector<std::string>*) const {
+    return "a list of text, as in [a.png, b.png]";
+  }
+  std::string operator()(const SourceKind*) const { return "simulator, files"; }
+};
+
+}  // namespace
+
+std::span<const Field> fields() {
+  return kFields;
+}
+
+const Field* find_field(std::string_view key) {
+  for (const Field& field : kFields) {
+    if (field.key == key) return &field;
+  }
+  return nullptr;
+}
+
+bool is_section(std::string_view name) {
+  for (const Field& field : kFields) {
+    if (field.key.size() > name.size() && field.key.starts_with(name) &&
+        field.key[name.size()] == '.') {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string accepted_values(const Field& field) {
+  if (!field.accepted.empty()) return std::string(field.accepted);
+  Configuration any;
+  return std::visit(Words{field}, field.target(any));
+}
+
+std::vector<std::string_view> changed_keys(const Configuration& a, const Configuration& b) {
+  Configuration first = a, second = b;  // targets are not const
+  std::vector<std::string_view> keys;
+  for (const Field& field : kFields) {
+    const FieldTarget other = field.target(second);
+    const bool same =
+        std::visit([&](auto* value) { return *value == *std::get<decltype(value)>(other); },
+                   field.target(first));
+    if (!same) keys.push_back(field.key);
+  }
+  return keys;
+}
+
+}  // namespace roundel

@@ -1,0 +1,39 @@
+#include "core/lens_patch.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace roundel {
+
+std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen::Vector2d& middle,
+                                         double reach) {
+  // Least squares over a 5 x 5 grid; the grid is the same for every patch, so is its
+  // pseudo-inverse.
+  constexpr int kSide = 5;
+  constexpr int kPoints = kSide * kSide;
+  using Design = Eigen::Matrix<double, kPoints, kTerms>;
+  static const Eigen::Matrix<double, kTerms, kPoints> kSolver = [] {
+    Design design;
+    for (int i = 0; i < kPoints; ++i) {
+      const double x = (i % kSide) / 2.0 - 1, y = (i / kSide) / 2.0 - 1;
+      design.row(i) << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
+    }
+    const Eigen::Matrix<double, kTerms, kTerms> normal_matrix = design.transpose() * design;
+    return Eigen::Matrix<double, kTerms, kPoints>(normal_matrix.inverse() * design.transpose());
+  }();
+
+  LensPatch patch;
+  patch.middle_ = middle;
+  patch.scale_ = 1 / std::max(reach, 1.0);
+  Eigen::Matrix<double, 2, kPoints> points;
+  for (int i = 0; i < kPoints; ++i) {
+    const Eigen::Vector2d offset((i % kSide) / 2.0 - 1, (i / kSide) / 2.0 - 1);
+    const auto point = camera.normalise(middle + offset / patch.scale_);
+    if (!point) return std::nullopt;
+    points.col(i) = *point;
+  }
+  patch.coefficients_.noalias() = points * kSolver.transpose();
+  return patch;
+}
+
+}  // namespace roundel

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/marker_geometry.hpp"
+
+namespace roundel {
+
+// Unknowns of the photometric fit, in the order of its normal equations. Motion is that of the
+// marker in its own frame, in units of its radius and radians.
+enum PhotometricUnknown {
+  kMoveX,
+  kMoveY,
+  kMoveZ,
+  kTurnX,
+  kTurnY,
+  kTurnZ,
+  kDark,      // grey levels
+  kContrast,  // grey levels
+  kSlopeX,    // of the light, share a radius
+  kSlopeY,
+  kBlur,   // logarithm of the edge profile's standard deviation
+  kShift,  // growth of dark over bright, pixels
+  kInner,  // radius ratio of a plain marker's bright disc
+  kPhotometricUnknowns
+};
+
+// A marker's pixels, one array a quantity (what vector units want). The length is a multiple of
+// eight; the rest is filled with pixels of no weight.
+struct PixelColumns {
+  const float* x;  // normalised, lens removed, relative to the marker's middle
+  const float* y;
+  const float* grey;
+  const float* weight;  // 1, or 0 for filling
+  int count;            // a multiple of eight
+};
+
+// The model's state, in the form that the kernel wants.
+struct PhotometricModel {
+  // Homogeneous plane coordinates of a pixel: at + by_x * x + by_y * y; units of the outer radius.
+  std::array<float, 3> at, by_x, by_y;
+  std::array<float, 4> pixel_slope;  // d(normalised)/d(pixel), row by row
+  std::array<float, 3> eye;          // the camera in the marker frame, units of the radius
+  float dark, contrast, slope_x, slope_y, blur, shift;
+  float inner;                              // rim of the bright centre
+  int halves;                               // half-teeth of the code, 0 without
+  std::array<float, 2 * kMaxBits> colours;  // of the half-teeth, 1 bright, 0 dark
+  float robust_scale;                       // residuals beyond it lose weight, grey levels
+};
+
+// The lower triangle of the normal matrix, row by row, and the rest of the normal equations.
+struct PhotometricSums {
+  std::array<float, kPhotometricUnknowns*(kPhotometricUnknowns + 1) / 2> normal_matrix{};
+  std::array<float, kPhotometricUnknowns> right_side{};
+  float squares = 0, weights = 0;  // of the weighted residuals
+};
+
+// Adds the equations of pixels on the outer rim and of those around the inner edges. The same to
+// the bit whatever the processor; the widest vector unit there is is used.
+void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels,
+                      PhotometricSums& sums);
+void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels,
+                      PhotometricSums& sums);
+
+}  // namespace roundel

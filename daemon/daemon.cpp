@@ -1,0 +1,225 @@
+#include "daemon/daemon.hpp"
+
+#include <fmt/ranges.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+#include "config/fields.hpp"
+#include "daemon/log.hpp"
+#include "daemon/setup.hpp"
+#include "transport/lcm_url.hpp"
+
+namespace roundel {
+namespace {
+
+constexpr std::int64_t kStatusPeriodNs = 1'000'000'000;
+
+}  // namespace
+
+Daemon::Daemon(Load load, SignalDescriptor& signals)
+    : load_(std::move(load)), signals_(signals), statistics_(now()) {
+  Parts parts;
+  parts.configuration = load_();
+  parts.broadcast.emplace(make_broadcast(parts.configuration));
+  parts.source = make_source(parts.configuration);
+  parts.camera = make_camera(parts.configuration, *parts.source);
+  parts.tracker.emplace(make_tracker(parts.configuration, parts.camera));
+  start(std::move(parts));
+  status_due_ns_ = monotonic_ns() + kStatusPeriodNs;
+  status_timer_.arm(status_due_ns_);
+}
+
+int Daemon::run() {
+  for (;;) {
+    const Wakeup wakeup = wait();
+    if (wakeup.signal) {
+      const SignalEvent event = signals_.take();
+      if (event == SignalEvent::kStop) break;
+      if (event == SignalEvent::kReload) reload();
+    }
+    if (wakeup.status && status_timer_.take()) publish_status();
+    if (wakeup.frame && !carry_frame()) break;
+  }
+  publish_status();
+  if (parts_.source->complete()) {
+    log_info("ends");
+    return 0;
+  }
+  log_error("{} frames of the recording could not be read", parts_.source->dropped());
+  return 1;
+}
+
+Daemon::Wakeup Daemon::wait() {
+  std::array<pollfd, 3> descriptors = {{{signals_.descriptor(), POLLIN, 0},
+                                        {status_timer_.descriptor(), POLLIN, 0},
+                                        {parts_.source->descriptor(), POLLIN, 0}}};
+  if (::poll(descriptors.data(), descriptors.size(), -1) < 0 && errno != EINTR) {
+    throw std::system_error(errno, std::generic_category(), "poll");
+  }
+  return {descriptors[0].revents != 0, descriptors[1].revents != 0, descriptors[2].revents != 0};
+}
+
+// The way of a frame: take the newest, track, give back, publish.
+bool Daemon::carry_frame() {
+  std::optional<FrameLease> lease = parts_.source->next();
+  information_.camera = parts_.source->state();
+  if (!lease) return information_.camera != CameraState::kEnded;
+  const CapturedFrame frame = lease->frame();
+  FrameTimes times;
+  times.captured_us = frame.captured.mono_us;
+  times.arrived_us = now().mono_us;
+
+  if (frame.luma.width != information_.width || frame.luma.height != information_.height) {
+    fit_tracker(frame.luma.width, frame.luma.height);
+  }
+  const std::span<const Marker> markers = parts_.tracker->track(frame.luma);
+  lease->give_back();
+  times.tracked_us = now().mono_us;
+
+  information_.frame = frame.number;
+  information_.dropped = parts_.source->dropped() - dropped_before_session_;
+  information_.captured = frame.captured;
+  information_.stamp_source = frame.stamp_source;
+  information_.tracking_us = static_cast<double>(times.tracked_us - times.arrived_us);
+  parts_.broadcast->publish(information_, markers);
+  times.published_us = now().mono_us;
+  statistics_.add(times, markers.size());
+  return true;
+}
+
+// A calibration holds for one resolution: frames of another one get no poses.
+void Daemon::fit_tracker(int width, int height) {
+  information_.width = width;
+  information_.height = height;
+  const CalibrationState before = information_.calibration;
+  const std::optional<CameraModel>& camera = parts_.camera;
+  const bool fits = camera && camera->width == width && camera->height == height;
+  information_.calibration = fits     ? CalibrationState::kValid
+                             : camera ? CalibrationState::kOtherResolution
+                                      : CalibrationState::kNone;
+  if (information_.calibration == before) return;
+  parts_.tracker.emplace(make_tracker(parts_.configuration, fits ? camera : std::nullopt));
+  begin_session();
+  if (!fits && !told_of_other_resolution_) {
+    told_of_other_resolution_ = true;
+    log_error("calibrated at {}x{}, but frames are {}x{} now: no poses for these", camera->width,
+              camera->height, width, height);
+  }
+}
+
+void Daemon::publish_status() {
+  const TimeStamp current = now();
+  // Instants that were missed while the machine slept are left out.
+  while (status_due_ns_ <= current.mono_us * 1000) status_due_ns_ += kStatusPeriodNs;
+  status_timer_.arm(status_due_ns_);
+  parts_.broadcast->retry(monotonic_ns());
+  information_.clock = clock_state();
+  information_.camera = parts_.source->state();
+
+  statistics_.report(current, status_);
+  status_.session = information_.session;
+  status_.utime = current.wall_us;
+  status_.mono = current.mono_us;
+  status_.dropped = parts_.source->dropped() - dropped_before_session_;
+  status_.unsent = parts_.broadcast->unsent_frames() - unsent_before_session_;
+  const header_t header = to_message(information_);
+  status_.width = header.width;
+  status_.height = header.height;
+  status_.stamp_source = header.stamp_source;
+  status_.clock_state = header.clock_state;
+  status_.camera_state = header.camera_state;
+  status_.calibration_state = header.calibration_state;
+  status_.arena_state = header.arena_state;
+  status_.simulated = header.simulated;
+  parts_.broadcast->publish(status_);
+}
+
+// Takes parts that are ready to work. Does not fail.
+void Daemon::start(Parts parts) {
+  parts_ = std::move(parts);
+  information_.width = parts_.source->width();
+  information_.height = parts_.source->height();
+  information_.camera = parts_.source->state();
+  information_.calibration = parts_.camera ? CalibrationState::kValid : CalibrationState::kNone;
+  information_.clock = clock_state();
+  information_.simulated = parts_.source->simulated();
+  told_of_other_resolution_ = false;
+  status_.camera = parts_.configuration.values.camera.name;
+  status_.source = parts_.source->description();
+  status_.url = parts_.configuration.values.lcm.url;
+  status_.version = ROUNDEL_VERSION;
+  begin_session();
+  log_summary();
+}
+
+void Daemon::begin_session() {
+  information_.session = std::max(now().wall_us, information_.session + 1);
+  dropped_before_session_ = parts_.source->dropped();
+  unsent_before_session_ = parts_.broadcast->unsent_frames();
+  statistics_.begin_session();
+}
+
+void Daemon::log_summary() const {
+  const Configuration& c = parts_.configuration.values;
+  const std::string code =
+      c.detector.bits == 0 ? "without a code" : fmt::format("with {} bits", c.detector.bits);
+  log_info("version {}: {}; {}; markers of {} m {}; poses to {}_FRAME on {}", ROUNDEL_VERSION,
+           parts_.source->description(), parts_.camera ? "calibrated" : "not calibrated, no poses",
+           c.detector.diameter_m, code, c.lcm.channel, c.lcm.url);
+  const LcmUrl url = parse_lcm_url(c.lcm.url);
+  if (url.provider == LcmUrl::Provider::kUdpMulticast && url.ttl == 0) {
+    log_warning(
+        "lcm.url has ttl=0: poses stay on this machine; ttl=1 lets them out to the local "
+        "network");
+  }
+}
+
+// A reload is whole or does not happen: what changed is made first, then taken.
+void Daemon::reload() {
+  // True if a key of these sections changed.
+  std::vector<std::string_view> changed;
+  const auto touches = [&](std::initializer_list<std::string_view> sections) {
+    return std::any_of(changed.begin(), changed.end(), [&](std::string_view key) {
+      return std::any_of(sections.begin(), sections.end(),
+                         [&](std::string_view section) { return key.starts_with(section); });
+    });
+  };
+  try {
+    Parts next;
+    next.configuration = load_();
+    changed = changed_keys(parts_.configuration.values, next.configuration.values);
+    const Configuration& values = next.configuration.values;
+    const bool simulator = values.source == SourceKind::kSimulator;
+    // Robots wear the markers of the configuration.
+    const bool new_source =
+        touches({"source"}) || (simulator ? touches({"simulator.", "marker.", "camera.calibration"})
+                                          : touches({"files."}));
+    if (new_source) next.source = make_source(next.configuration);
+    next.camera = make_camera(next.configuration, next.source ? *next.source : *parts_.source);
+    const bool new_camera = !same_camera(next.camera, parts_.camera);
+    const bool new_tracker = new_source || new_camera || touches({"marker.", "detector."});
+    if (new_tracker) next.tracker.emplace(make_tracker(next.configuration, next.camera));
+    if (touches({"lcm.", "camera.name"})) {
+      next.broadcast.emplace(make_broadcast(next.configuration));
+    }
+    if (changed.empty() && !new_camera) {
+      log_info("reloaded: nothing has changed");
+      return;
+    }
+    log_info("reloaded: {} changed", new_camera && changed.empty()
+                                         ? std::string("the calibration")
+                                         : fmt::format("{}", fmt::join(changed, ", ")));
+    if (!next.source) next.source = std::move(parts_.source);
+    if (!next.tracker) next.tracker = std::move(parts_.tracker);
+    if (!next.broadcast) next.broadcast = std::move(parts_.broadcast);
+    start(std::move(next));
+  } catch (const std::exception& error) {
+    log_error("{}; the configuration in use stays", error.what());
+  }
+}
+
+}  // namespace roundel

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "config/reader.hpp"
+#include "core/tracker.hpp"
+#include "daemon/broadcast.hpp"
+#include "daemon/frame_source.hpp"
+#include "daemon/monotonic_timer.hpp"
+#include "daemon/signal_descriptor.hpp"
+#include "daemon/statistics.hpp"
+
+namespace roundel {
+
+// roundeld without its command line: carries frames from the source to the network on one thread,
+// until a signal or the end of a recording.
+class Daemon {
+ public:
+  // Reads the configuration; called again for every reload.
+  using Load = std::function<LoadedConfiguration()>;
+
+  // Sets everything up. Throws ConfigError, or std::runtime_error where a file is at fault.
+  Daemon(Load load, SignalDescriptor& signals);
+
+  // Returns the exit status: 0, or 1 if parts of a recording could not be read.
+  int run();
+
+ private:
+  // What follows from a configuration. A reload replaces only what has changed.
+  struct Parts {
+    LoadedConfiguration configuration;
+    std::unique_ptr<FrameSource> source;
+    std::optional<CameraModel> camera;
+    std::optional<Tracker> tracker;
+    std::optional<Broadcast> broadcast;
+  };
+
+  void start(Parts parts);
+  void reload();
+  void begin_session();
+  void log_summary() const;
+
+  struct Wakeup {
+    bool signal = false, status = false, frame = false;
+  };
+  Wakeup wait();
+  bool carry_frame();  // false at the end of the source
+  void fit_tracker(int width, int height);
+  void publish_status();
+
+  Load load_;
+  SignalDescriptor& signals_;
+  MonotonicTimer status_timer_;
+  std::int64_t status_due_ns_ = 0;
+  Parts parts_;
+  Statistics statistics_;
+  FrameInformation information_;  // of the last frame; the states hold in between
+  status_t status_{};             // reused, so that its texts are not copied every second
+  std::int64_t dropped_before_session_ = 0;
+  std::int64_t unsent_before_session_ = 0;
+  bool told_of_other_resolution_ = false;
+};
+
+}  // namespace roundel

@@ -1,0 +1,109 @@
+#include "daemon/setup.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "calibration/camera_file.hpp"
+#include "daemon/files_source.hpp"
+#include "daemon/simulator_source.hpp"
+#include "transport/lcm_url.hpp"
+
+namespace roundel {
+namespace {
+
+std::unique_ptr<FrameSource> make_simulator(const LoadedConfiguration& configuration) {
+  const SimulatorSettings& settings = configuration.values.simulator;
+  const DetectorParameters& markers = configuration.values.detector;
+  ArenaOptions options;
+  options.image_width = settings.width;
+  options.image_height = settings.height;
+  options.frame_rate = settings.frame_rate;
+  options.seed = static_cast<std::uint64_t>(settings.seed);
+  options.robots = settings.robots;
+  options.bits = markers.bits;
+  options.hamming = markers.hamming;
+  options.diameter_m = markers.diameter_m;
+  options.corners = settings.corner_markers;
+  options.length_m = settings.arena_length;
+  options.width_m = settings.arena_width;
+  options.camera_height_m = settings.camera_height;
+  options.clutter = settings.clutter;
+  options.imaging.blur_px = settings.blur;
+  options.imaging.noise_sigma = settings.noise;
+  options.imaging.exposure_s = settings.exposure;
+  const std::string& calibration = configuration.values.camera.calibration;
+  if (!calibration.empty()) {
+    options.camera = read_camera_file(calibration).camera;
+    check_resolution(*options.camera, settings.width, settings.height, calibration);
+  }
+  try {
+    return std::make_unique<SimulatorSource>(options);
+  } catch (const std::invalid_argument& error) {
+    throw configuration.error("simulator", error.what());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> make_source(const LoadedConfiguration& configuration) {
+  if (configuration.values.source == SourceKind::kSimulator) return make_simulator(configuration);
+  const FilesSettings& files = configuration.values.files;
+  return std::make_unique<FilesSource>(FilesParameters{files.paths, files.frame_rate, files.loop});
+}
+
+std::optional<CameraModel> make_camera(const LoadedConfiguration& configuration,
+                                       const FrameSource& source) {
+  if (source.camera()) return source.camera();
+  const std::string& path = configuration.values.camera.calibration;
+  if (path.empty()) return std::nullopt;
+  const CameraModel camera = read_camera_file(path).camera;
+  check_resolution(camera, source.width(), source.height(), path);
+  return camera;
+}
+
+Tracker make_tracker(const LoadedConfiguration& configuration,
+                     const std::optional<CameraModel>& camera) {
+  try {
+    return {configuration.values.detector, camera};
+  } catch (const std::invalid_argument& error) {
+    throw configuration.error("detector", error.what());
+  }
+}
+
+Broadcast make_broadcast(const LoadedConfiguration& configuration) {
+  check_broadcast(configuration);
+  return {configuration.values.lcm, configuration.values.camera.name};
+}
+
+void check_broadcast(const LoadedConfiguration& configuration) {
+  try {
+    Broadcast::check(configuration.values.lcm, configuration.values.camera.name);
+  } catch (const LcmUrlError& error) {
+    throw configuration.error("lcm.url", error.what());
+  } catch (const std::invalid_argument& error) {
+    throw configuration.error("lcm.max_datagram", error.what());
+  }
+}
+
+bool same_camera(const std::optional<CameraModel>& a, const std::optional<CameraModel>& b) {
+  if (!a || !b) return !a && !b;
+  const auto values = [](const CameraModel& c) {
+    const Distortion& d = c.distortion;
+    return std::array<double, 11>{static_cast<double>(c.width),
+                                  static_cast<double>(c.height),
+                                  c.fx,
+                                  c.fy,
+                                  c.cx,
+                                  c.cy,
+                                  d.k1,
+                                  d.k2,
+                                  d.p1,
+                                  d.p2,
+                                  d.k3};
+  };
+  return values(*a) == values(*b);
+}
+
+}  // namespace roundel

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/grey_image.hpp"
+#include "daemon/frame_source.hpp"
+#include "daemon/monotonic_timer.hpp"
+#include "simulator/arena.hpp"
+
+namespace roundel {
+
+// Frames of a rendered arena in real time. Frame n is due n periods after the start; if rendering
+// and tracking take longer than a period, frames are left out, as with a camera.
+class SimulatorSource final : public FrameSource {
+ public:
+  // Throws std::invalid_argument for options that can't be met.
+  explicit SimulatorSource(const ArenaOptions& options);
+
+  int descriptor() const override { return timer_.descriptor(); }
+  std::optional<FrameLease> next() override;
+  CameraState state() const override { return state_; }
+  std::int64_t dropped() const override { return dropped_; }
+  int width() const override { return arena_.camera().width; }
+  int height() const override { return arena_.camera().height; }
+  bool simulated() const override { return true; }
+  std::string description() const override;
+  std::optional<CameraModel> camera() const override { return arena_.camera(); }
+
+ private:
+  std::int64_t due_ns(std::int64_t frame) const;
+
+  Arena arena_;
+  GreyImage image_;
+  MonotonicTimer timer_;
+  CameraState state_ = CameraState::kStarting;
+  std::int64_t start_ns_ = 0;
+  std::int64_t last_frame_ = -1;
+  std::int64_t dropped_ = 0;
+};
+
+}  // namespace roundel

@@ -1,0 +1,137 @@
+#include "tools/detection_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "calibration/camera_file.hpp"
+#include "tools/commands.hpp"
+#include "tools/draw_markers.hpp"
+#include "tools/frame_input.hpp"
+#include "tools/frame_text.hpp"
+#include "tools/json_frame.hpp"
+
+namespace roundel {
+namespace {
+
+// Where the annotated picture of a frame goes: the file given, or one for every frame in a
+// directory.
+class AnnotatedPath {
+ public:
+  AnnotatedPath(const std::string& path, const FrameInput& input) : path_(path) {
+    single_ = path.ends_with(".png");
+    if (single_ && input.is_sequence()) {
+      throw UsageError("--annotate " + path + ": several frames need a directory");
+    }
+    if (!single_ && !path.empty()) {
+      std::error_code error;
+      std::filesystem::create_directories(path, error);
+      if (error) {
+        throw std::runtime_error(fmt::format("{} can't be created: {}", path, error.message()));
+      }
+    }
+  }
+
+  bool wanted() const { return !path_.empty(); }
+
+  std::string of(const FrameInput& input) const {
+    if (single_) {
+      return path_.string();
+    }
+    const std::string name = input.from_video()
+                                 ? fmt::format("frame_{:06}", input.frame())
+                                 : std::filesystem::path(input.source()).stem().string() + "_found";
+    return (path_ / (name + ".png")).string();
+  }
+
+ private:
+  std::filesystem::path path_;
+  bool single_ = false;
+};
+
+// Intrinsics hold for one resolution, tracks for frames of one camera.
+class SizeCheck {
+ public:
+  SizeCheck(FrameSizes sizes, const std::optional<CameraModel>& camera,
+            const std::string& camera_file)
+      : sizes_(sizes), camera_(camera), camera_file_(camera_file) {}
+
+  // Throws std::runtime_error that names the frame's source.
+  void check(const GreyImage& frame, const FrameInput& input) {
+    if (camera_) {
+      try {
+        check_resolution(*camera_, frame.width, frame.height, camera_file_);
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("{}: {}", input.source(), error.what()));
+      }
+    }
+    if (sizes_ == FrameSizes::kOneForAll && width_ != 0 &&
+        (frame.width != width_ || frame.height != height_)) {
+      throw std::runtime_error(
+          fmt::format("{} is {}x{} and follows frames of {}x{}; frames to be tracked have one size",
+                      input.source(), frame.width, frame.height, width_, height_));
+    }
+    width_ = frame.width;
+    height_ = frame.height;
+  }
+
+ private:
+  FrameSizes sizes_;
+  const std::optional<CameraModel>& camera_;
+  const std::string& camera_file_;
+  int width_ = 0, height_ = 0;
+};
+
+FindMarkers checked_finder(const MakeFinder& make_finder, const DetectionOptions& options,
+                           const std::optional<CameraModel>& camera) {
+  try {
+    return make_finder(options.parameters, camera);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());  // parameters out of range
+  }
+}
+
+void print(const std::string& line) {
+  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size() || std::fflush(stdout) != 0) {
+    throw std::runtime_error(
+        fmt::format("standard output can't be written: {}", std::strerror(errno)));
+  }
+}
+
+}  // namespace
+
+void run_detection(const DetectionOptions& options, FrameSizes sizes,
+                   const MakeFinder& make_finder) {
+  if (!options.arena_file.empty()) {
+    throw UsageError("--arena is not supported yet");
+  }
+  FrameInput input(options.files);
+  const AnnotatedPath annotated(options.annotate, input);
+  std::optional<CameraModel> camera;
+  if (!options.camera_file.empty()) {
+    camera = read_camera_file(options.camera_file).camera;
+  }
+  const FindMarkers find = checked_finder(make_finder, options, camera);
+  SizeCheck size_check(sizes, camera, options.camera_file);
+  for (GreyImage frame; input.next(frame);) {
+    size_check.check(frame, input);
+    const auto start = std::chrono::steady_clock::now();
+    const std::span<const Marker> markers = find(frame.view());
+    const std::chrono::duration<double, std::micro> elapsed =
+        std::chrono::steady_clock::now() - start;
+    const FrameInfo info{input.source(), input.frame(), input.utime(), elapsed.count()};
+    print(options.json ? json_line(frame_json(info, markers)) : frame_text(info, markers));
+    if (annotated.wanted()) {
+      save_annotated_png(annotated.of(input), frame.view(), markers, camera,
+                         options.parameters.diameter_m);
+    }
+  }
+}
+
+}  // namespace roundel
