@@ -132,7 +132,10 @@ class Reader {
     }
     const std::string key = assignment.substr(0, equals);
     const Field* field = find_field(key);
-    if (field == nullptr) throw unknown_key(name, key, "");
+    if (field == nullptr) {
+      const std::string section = key.substr(0, key.find('.'));
+      throw unknown_key(name, key, is_section(section) ? section : "");
+    }
     const YAML::Node value = parse(assignment.substr(equals + 1), name);
     read_value(*field, value, name);
   }

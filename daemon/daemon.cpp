@@ -84,6 +84,7 @@ bool Daemon::carry_frame() {
   information_.dropped = parts_.source->dropped() - dropped_before_session_;
   information_.captured = frame.captured;
   information_.stamp_source = frame.stamp_source;
+  information_.tracking_us = static_cast<double>(times.tracked_us - times.arrived_us);
   parts_.broadcast->publish(information_, markers);
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
@@ -166,7 +167,7 @@ void Daemon::log_summary() const {
   const Configuration& c = parts_.configuration.values;
   const std::string code =
       c.detector.bits == 0 ? "without a code" : fmt::format("with {} bits", c.detector.bits);
-  log_info("{}: {}; {}; markers of {} m {}; poses to {}_FRAME on {}", ROUNDEL_VERSION,
+  log_info("version {}: {}; {}; markers of {} m {}; poses to {}_FRAME on {}", ROUNDEL_VERSION,
            parts_.source->description(), parts_.camera ? "calibrated" : "not calibrated, no poses",
            c.detector.diameter_m, code, c.lcm.channel, c.lcm.url);
   const LcmUrl url = parse_lcm_url(c.lcm.url);

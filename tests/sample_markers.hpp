@@ -42,6 +42,7 @@ inline FrameInformation sample_information(std::int64_t frame = 7) {
   information.dropped = 0;
   information.captured = {1'700'000'001'000'000, 5'000'000};
   information.published = {1'700'000'001'020'000, 5'020'000};
+  information.tracking_us = 31.5;
   information.width = 1920;
   information.height = 1080;
   information.stamp_source = StampSource::kMiddleOfExposure;

@@ -27,6 +27,7 @@ struct FrameInformation {
   std::int64_t dropped = 0;
   TimeStamp captured;
   TimeStamp published;  // set by Publisher
+  double tracking_us = 0;
   int width = 0, height = 0;
   StampSource stamp_source = StampSource::kUnknown;
   ClockState clock = ClockState::kUnknown;

@@ -60,6 +60,7 @@ header_t to_message(const FrameInformation& information) {
   header.capture_mono = information.captured.mono_us;
   header.publish_utime = information.published.wall_us;
   header.publish_mono = information.published.mono_us;
+  header.tracking_us = static_cast<float>(information.tracking_us);
   header.width = pixels(information.width);
   header.height = pixels(information.height);
   header.stamp_source = code(information.stamp_source);

@@ -35,7 +35,9 @@ Picture printed(const TemporaryDirectory& directory, int bits, std::uint32_t wor
 }
 
 // std::floor is a function call on a plain x86-64, and this is called a billion times.
-int floored(double x) { return static_cast<int>(x + 4096) - 4096; }
+int floored(double x) {
+  return static_cast<int>(x + 4096) - 4096;
+}
 
 // The picture made smaller, to this diameter of the black disc, and turned counter-clockwise about
 // a point half a pixel or less off the middle: every pixel is the mean of the paper that it covers.
@@ -54,6 +56,10 @@ GreyImage scaled_and_turned(const Picture& master, double diameter_px, double tu
   for (int v = 0; v < side; ++v) {
     for (int u = 0; u < side; ++u) {
       int sum = 0;
+      if (std::hypot(u - middle, v - middle) > diameter_px * kMarginRatio / 2 + 2) {
+        image.pixels[static_cast<std::size_t>(v * side + u)] = 255;  // off the paper
+        continue;
+      }
       for (int i = 0; i < samples * samples; ++i) {
         const double x = u + (i % samples + 0.5) / samples - middle;
         const double y = v + (i / samples + 0.5) / samples - middle;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tests/error_of.hpp"
+#include "tests/temporary_folder.hpp"
 #include "transport/lcm_link.hpp"
 
 using namespace roundel;

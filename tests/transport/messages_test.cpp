@@ -67,6 +67,7 @@ TEST_CASE("the header carries what is known about the frame") {
   CHECK(header.capture_mono == 5'000'000);
   CHECK(header.publish_utime == 1'700'000'001'020'000);
   CHECK(header.publish_mono == 5'020'000);
+  CHECK(header.tracking_us == 31.5F);
   CHECK(header.width == 1920);
   CHECK(header.height == 1080);
   CHECK(header.stamp_source == header_t::STAMP_MIDDLE_OF_EXPOSURE);
