@@ -1,5 +1,9 @@
 #include "bench/accuracy/contender.hpp"
 
+#include <iterator>
+
+#include "bench/accuracy/apriltag_system.hpp"
+#include "bench/accuracy/aruco_system.hpp"
 #include "bench/accuracy/circle_painter.hpp"
 #include "bench/accuracy/roundel_system.hpp"
 
@@ -20,8 +24,18 @@ Contender roundel_contender(const std::string& name, MarkerKind kind) {
 }  // namespace
 
 std::vector<Contender> all_contenders() {
-  return {roundel_contender("roundel", MarkerKind::WhyCode),
-          roundel_contender("roundel-whycon", MarkerKind::WhyCon)};
+  std::vector<Contender> all = {roundel_contender("roundel", MarkerKind::WhyCode),
+                                roundel_contender("roundel-whycon", MarkerKind::WhyCon)};
+  [[maybe_unused]] const auto add = [&](std::vector<Contender> some) {
+    std::move(some.begin(), some.end(), std::back_inserter(all));
+  };
+#ifdef ROUNDEL_BENCH_APRILTAG
+  add(apriltag_contenders());
+#endif
+#ifdef ROUNDEL_BENCH_ARUCO
+  add(aruco_contenders());
+#endif
+  return all;
 }
 
 std::vector<Result> run(const Experiment& experiment, const Contender& contender) {
@@ -42,7 +56,7 @@ std::vector<Result> run(const Experiment& experiment, const Contender& contender
       if (!shown.judged() && !systems[i]->follows()) continue;
       const auto sightings = systems[i]->look(picture.view());
       if (!shown.judged()) continue;
-      judge(experiment, view, systems[i]->has_yaw(), sightings, results[i].verdicts);
+      judge(experiment, view, *systems[i], sightings, results[i].verdicts);
     }
   }
   return results;

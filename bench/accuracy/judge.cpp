@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kMinReach = 3;  // pixels
 
-Outcome outcome_of(const Sighting& sighting, int number, bool has_yaw) {
-  if (!has_yaw || sighting.number == number) return Outcome::kFound;
+Outcome outcome_of(const Sighting& sighting, int number, const System& system) {
+  if (!system.has_yaw() || sighting.number == number % system.id_count()) return Outcome::kFound;
   return sighting.number < 0 ? Outcome::kUnread : Outcome::kWrongId;
 }
 
@@ -31,7 +31,7 @@ void measure(const Sighting& sighting, Record& record) {
 
 }  // namespace
 
-void judge(const Experiment& experiment, int view, bool has_yaw,
+void judge(const Experiment& experiment, int view, const System& system,
            std::span<const Sighting> sightings, Verdicts& verdicts) {
   const auto& markers = experiment.views[static_cast<std::size_t>(view)].markers;
   struct Match {
@@ -75,7 +75,7 @@ void judge(const Experiment& experiment, int view, bool has_yaw,
     record.short_side_px = short_side_px(experiment.camera, record.truth, experiment.diameter_m);
     if (const Sighting* sighting = matches[i].sighting) {
       record.read = sighting->number;
-      record.outcome = outcome_of(*sighting, record.number, has_yaw);
+      record.outcome = outcome_of(*sighting, record.number, system);
       if (record.outcome == Outcome::kFound) measure(*sighting, record);
     }
     verdicts.records.push_back(record);

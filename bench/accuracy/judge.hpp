@@ -45,7 +45,7 @@ struct Verdicts {
 
 // Holds what a system saw in a view against the truth. A sighting belongs to the marker whose
 // centre is nearest, within half of the marker's shorter radius.
-void judge(const Experiment& experiment, int view, bool has_yaw,
+void judge(const Experiment& experiment, int view, const System& system,
            std::span<const Sighting> sightings, Verdicts& verdicts);
 
 }  // namespace roundel::bench

@@ -1,6 +1,7 @@
 #include "bench/accuracy/roundel_system.hpp"
 
 #include "core/detector.hpp"
+#include "core/necklace.hpp"
 #include "core/tracker.hpp"
 
 namespace roundel::bench {
@@ -16,14 +17,16 @@ DetectorParameters parameters_for(const Experiment& experiment, bool with_code) 
 
 class RoundelSystem : public System {
  public:
-  RoundelSystem(bool with_code, bool follows)
+  RoundelSystem(const Experiment& experiment, bool with_code, bool follows)
       : name_(std::string(with_code ? "roundel" : "roundel-whycon") + (follows ? "-track" : "")),
         with_code_(with_code),
-        follows_(follows) {}
+        follows_(follows),
+        id_count_(NecklaceCode(experiment.bits, 1).id_count()) {}
 
   const std::string& name() const override { return name_; }
   bool has_yaw() const override { return with_code_; }
   bool follows() const override { return follows_; }
+  int id_count() const override { return id_count_; }
 
  protected:
   std::span<const Sighting> sightings(std::span<const Marker> markers) {
@@ -44,13 +47,14 @@ class RoundelSystem : public System {
  private:
   std::string name_;
   bool with_code_, follows_;
+  int id_count_;
   std::vector<Sighting> sightings_;
 };
 
 class RoundelDetector final : public RoundelSystem {
  public:
   RoundelDetector(const Experiment& experiment, bool with_code)
-      : RoundelSystem(with_code, false),
+      : RoundelSystem(experiment, with_code, false),
         detector_(parameters_for(experiment, with_code), experiment.camera) {}
 
   std::span<const Sighting> look(const LumaView& picture) override {
@@ -64,7 +68,7 @@ class RoundelDetector final : public RoundelSystem {
 class RoundelTracker final : public RoundelSystem {
  public:
   RoundelTracker(const Experiment& experiment, bool with_code)
-      : RoundelSystem(with_code, true),
+      : RoundelSystem(experiment, with_code, true),
         tracker_(parameters_for(experiment, with_code), experiment.camera) {}
 
   std::span<const Sighting> look(const LumaView& picture) override {

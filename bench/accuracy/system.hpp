@@ -12,7 +12,7 @@ namespace roundel::bench {
 
 // What a system says about one marker in one picture.
 struct Sighting {
-  int number = -1;      // PlacedMarker::number of the id it read; -1: no id
+  int number = -1;      // of the id it read, from 0; -1: no id
   double u = 0, v = 0;  // of the marker's centre, pixels
   Pose pose;            // in DESIGN.md's frames, whatever the system's own are
   bool has_sigma = false;
@@ -28,6 +28,10 @@ class System {
   virtual const std::string& name() const = 0;
   virtual bool has_yaw() const { return true; }   // false: markers without an x axis and an id
   virtual bool follows() const { return false; }  // wants every view of a continuous experiment
+
+  // How many ids the system has. With fewer than markers, ids are worn twice: marker i wears
+  // number i % id_count().
+  virtual int id_count() const = 0;
 
   // The span holds until the next call.
   virtual std::span<const Sighting> look(const LumaView& picture) = 0;
