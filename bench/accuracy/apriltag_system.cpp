@@ -15,8 +15,6 @@ extern "C" {
 #include <optional>
 #include <stdexcept>
 
-#include "bench/accuracy/square_painter.hpp"
-
 namespace roundel::bench {
 
 namespace {
@@ -168,7 +166,7 @@ std::vector<Contender> apriltag_contenders() {
   for (const FamilyKind& kind : kFamilies) {
     contenders.push_back({kind.name,
                           [&kind](const Experiment& experiment) {
-                            return std::make_unique<SquarePainter>(experiment, patterns_of(kind));
+                            return square_print(experiment, patterns_of(kind));
                           },
                           [&kind](const Experiment& experiment) {
                             Systems systems;

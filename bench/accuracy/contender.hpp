@@ -1,12 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/accuracy/judge.hpp"
-#include "bench/accuracy/painter.hpp"
+#include "bench/accuracy/print.hpp"
 #include "bench/accuracy/system.hpp"
 
 namespace roundel::bench {
@@ -14,7 +13,7 @@ namespace roundel::bench {
 // A kind of print and the systems that read it: they are shown the same pictures.
 struct Contender {
   std::string name;
-  std::function<std::unique_ptr<Painter>(const Experiment&)> painter;
+  std::function<Print(const Experiment&)> print;
   std::function<Systems(const Experiment&)> systems;
 };
 
@@ -25,10 +24,11 @@ struct Result {
   const Experiment* experiment = nullptr;
   std::string system;
   bool has_yaw = true;
-  Verdicts verdicts;
+  Verdicts verdicts;  // records in the order of views and markers, the same for every system
 };
 
-// Shows an experiment to a contender; one result a system.
-std::vector<Result> run(const Experiment& experiment, const Contender& contender);
+// Shows an experiment to a contender; one result a system. The Cramer-Rao bound is worked out for
+// at most `bounds` of the judged markers, evenly picked.
+std::vector<Result> run(const Experiment& experiment, const Contender& contender, int bounds);
 
 }  // namespace roundel::bench

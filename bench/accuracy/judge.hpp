@@ -36,6 +36,11 @@ struct Record {
   Eigen::Vector3d sigma_position = Eigen::Vector3d::Zero();
   Eigen::Vector3d sigma_rotation = Eigen::Vector3d::Zero();
   double ambiguity = 0;
+
+  // Cramer-Rao bound of this view: square root of the axes' summed variances; negative where it was
+  // not worked out.
+  double bound_position = -1, bound_rotation = -1;  // metres; radians
+  bool has_bound() const { return bound_position >= 0; }
 };
 
 struct Verdicts {

@@ -39,6 +39,7 @@ Summary summarise(const Result& result) {
   s.has_yaw = result.has_yaw;
   s.extra = result.verdicts.extra;
   std::vector<double> position, phi, normal, position_honesty, rotation_honesty, sigma;
+  std::vector<double> squared_error, squared_bound, bound_phi;
   for (const Record& record : result.verdicts.records) {
     ++s.judged;
     switch (record.outcome) {
@@ -62,6 +63,11 @@ Summary summarise(const Result& result) {
       ++s.flips;
       continue;
     }
+    if (record.has_bound()) {
+      squared_error.push_back(1e6 * record.position_error.squaredNorm());
+      squared_bound.push_back(1e6 * record.bound_position * record.bound_position);
+      bound_phi.push_back(0.5 * record.bound_rotation);
+    }
     if (!record.has_sigma) continue;
     s.has_sigma = true;
     position_honesty.push_back(
@@ -76,6 +82,10 @@ Summary summarise(const Result& result) {
   s.position_honesty = mean_of(position_honesty);
   s.rotation_honesty = mean_of(rotation_honesty);
   s.mean_sigma_mm = mean_of(sigma);
+  s.position_rms_mm = std::sqrt(mean_of(squared_error));
+  s.bound_rms_mm = std::sqrt(mean_of(squared_bound));
+  s.efficiency = mean_of(squared_bound) / mean_of(squared_error);
+  s.bound_phi_median = distribution_of(bound_phi).median;
   return s;
 }
 

@@ -26,6 +26,12 @@ struct Summary {
   double position_honesty = 0, rotation_honesty = 0;
   double mean_sigma_mm = 0;  // of the position: square root of the axes' summed variances
 
+  // Against the Cramer-Rao bound, over the views for which it is known, flips left out: root mean
+  // squares of the position error and of its bound, and their squared quotient; medians of phi and
+  // of half the rotation's bound.
+  double position_rms_mm = 0, bound_rms_mm = 0, efficiency = 0;
+  double bound_phi_median = 0;
+
   double found_share() const { return judged > 0 ? static_cast<double>(found) / judged : 0; }
   double flip_share() const { return found > 0 ? static_cast<double>(flips) / found : 0; }
 };
