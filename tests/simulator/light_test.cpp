@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "reference.hpp"
 #include "simulator/renderer.hpp"
 #include "simulator/response.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "reference.hpp"
 #include "simulator/renderer.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "reference.hpp"
 #include "simulator/renderer.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 
