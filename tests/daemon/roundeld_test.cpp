@@ -6,7 +6,7 @@
 
 #include "tests/child_process.hpp"
 #include "tests/private_network.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/temporary_directory.hpp"
 #include "transport/subscriber.hpp"
 
 using namespace roundel;
@@ -47,7 +47,7 @@ const ReceivedFrame* wait_for_frame(Subscriber& subscriber, Wanted&& wanted) {
 TEST_CASE("roundeld sends the poses of a simulated arena and ends at SIGTERM with 0") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7701;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", small_arena(kPort, 3))));
 
@@ -92,7 +92,7 @@ TEST_CASE("roundeld sends the poses of a simulated arena and ends at SIGTERM wit
 TEST_CASE("roundeld sends frames also when nothing is seen") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7702;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", small_arena(kPort, 0))));
   for (int i = 0; i < 3; ++i) {
@@ -107,7 +107,7 @@ TEST_CASE("roundeld sends frames also when nothing is seen") {
 TEST_CASE("a wrong configuration at SIGHUP changes nothing, a right one takes effect") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7703;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
   const std::string path = folder.write("roundel.yaml", small_arena(kPort, 1));
   ChildProcess daemon(command(path));
@@ -148,25 +148,23 @@ TEST_CASE("a wrong configuration at SIGHUP changes nothing, a right one takes ef
 
 TEST_CASE("roundeld started before the network waits for it") {
   if (!multicast_is_private()) return;
-  // A network namespace that has no route yet, with a shell that makes one when it is told.
-  const TemporaryFolder folder;
-  const std::string go = folder.path("go");
-  const std::string script =
-      "mkfifo " + go + "; " + std::string(ROUNDELD_BINARY) +
-      " --set simulator.width=320 --set simulator.height=240 --set simulator.clutter=false & "
-      "read line < " +
-      go + "; ip link set lo up; ip route add 239.0.0.0/8 dev lo; wait";
-  ChildProcess shell({"/usr/bin/unshare", "-n", "/bin/sh", "-c", script});
-  REQUIRE(shell.wait_for("trying again", kPatience));
-  CHECK(shell.errors().find("no route to the multicast group 239.255.76.67") != std::string::npos);
-  std::ofstream(go) << "go\n";
-  CHECK(shell.wait_for("the network is there", kPatience));
+  // A network namespace of its own that has no route yet; unshare becomes roundeld.
+  ChildProcess daemon({"/usr/bin/unshare", "-n", ROUNDELD_BINARY, "--set", "simulator.width=320",
+                       "--set", "simulator.height=240", "--set", "simulator.clutter=false"});
+  REQUIRE(daemon.wait_for("trying again", kPatience));
+  CHECK(daemon.errors().find("no route to the multicast group 239.255.76.67") != std::string::npos);
+  const std::string inside = "nsenter -n -t " + std::to_string(daemon.pid()) + " ip ";
+  REQUIRE(std::system((inside + "link set lo up").c_str()) == 0);
+  REQUIRE(std::system((inside + "route add 239.0.0.0/8 dev lo").c_str()) == 0);
+  CHECK(daemon.wait_for("the network is there", kPatience));
+  daemon.signal(SIGTERM);
+  CHECK(daemon.wait(kPatience) == 0);
 }
 
 TEST_CASE("a recording is sent frame by frame to its end") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7704;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   std::string video = "YUV4MPEG2 W32 H32 F30:1 Cmono\n";
   for (int i = 0; i < 20; ++i) video += "FRAME\n" + std::string(32 * 32, 'x');
   const std::string path = folder.write("a.y4m", video);
