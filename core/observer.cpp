@@ -18,6 +18,9 @@ namespace {
 constexpr double kOutlineNoise = 0.30;
 constexpr double kToothEdgeNoise = 0.15;
 
+// A hypothesis behind by so much in its log-likelihood before it is refined stays behind.
+constexpr double kDecided = 60;
+
 // How far a plain marker's edges may be shifted as a whole, pixels.
 constexpr double kPlainShiftSigma = 0.02;
 // Residuals that no noise explains, share of the contrast.
@@ -163,7 +166,9 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     EdgeLook look;
     // Beside an unknown inner ratio, a shift of all edges looks like another distance.
     if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
-    if (loaded) fits[i] = fit_.fit(hypothesis.pose, candidate.pattern, look, kMaxSteps);
+    const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
+    if (loaded && lead < kDecided)
+      fits[i] = fit_.fit(hypothesis.pose, candidate.pattern, look, kMaxSteps);
     if (fits[i]) {
       hypothesis.pose = fits[i]->pose;
       hypothesis.covariance = fits[i]->covariance;

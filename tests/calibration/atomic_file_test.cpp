@@ -5,26 +5,27 @@
 #include <filesystem>
 #include <iterator>
 
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace roundel;
 
 TEST_CASE("a file is replaced as a whole and nothing else is left in its folder") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string path = folder.write("a.yaml", "a long old text");
   write_file_atomically(path, "new");
-  CHECK(file_contents(path) == "new");
-  CHECK(std::distance(std::filesystem::directory_iterator(folder.path("")), {}) == 1);
+  CHECK(read_file(path) == "new");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.file("")), {}) == 1);
 }
 
 TEST_CASE("a file that can't be written is an error and leaves no temporary file") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   CHECK(error_of([&] {
-          write_file_atomically(folder.path("none/a.yaml"), "x");
-        }).starts_with(folder.path("none/a.yaml") + ": can't be written"));
-  std::filesystem::create_directory(folder.path("taken"));
+          write_file_atomically(folder.file("none/a.yaml"), "x");
+        }).starts_with(folder.file("none/a.yaml") + ": can't be written"));
+  std::filesystem::create_directory(folder.file("taken"));
   CHECK(error_of([&] {
-          write_file_atomically(folder.path("taken"), "x");
-        }).starts_with(folder.path("taken") + ": can't be replaced"));
-  CHECK(std::distance(std::filesystem::directory_iterator(folder.path("")), {}) == 1);
+          write_file_atomically(folder.file("taken"), "x");
+        }).starts_with(folder.file("taken") + ": can't be replaced"));
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.file("")), {}) == 1);
 }

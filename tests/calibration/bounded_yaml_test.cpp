@@ -4,7 +4,8 @@
 
 #include <string>
 
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace roundel;
 
@@ -43,7 +44,7 @@ TEST_CASE("YAML nested too deep is refused in every way of nesting") {
 TEST_CASE("YAML that is too large is refused before it is parsed") {
   CHECK(error_for(std::string(300000, ' ')) ==
         "file.yaml: too large for such a file, at most 262144 bytes");
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string path = folder.write("large.yaml", std::string(300000, '#'));
   CHECK(error_of([&] { read_text_file(path); }) ==
         path + ": too large for such a file, at most 262144 bytes");

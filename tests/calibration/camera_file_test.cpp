@@ -7,7 +7,8 @@
 #include <string>
 
 #include "calibration/bounded_yaml.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace roundel;
 
@@ -51,14 +52,14 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 // The error for the golden file with one piece of text replaced.
 std::string error_with(const std::string& what, const std::string& by) {
-  const std::string text = replaced(file_contents(kGolden), what, by);
+  const std::string text = replaced(read_file(kGolden), what, by);
   return error_of([&] { parse_camera_file(text, "camera.yaml"); });
 }
 
 }  // namespace
 
 TEST_CASE("a camera file is written as ROS's camera_calibration writes it") {
-  CHECK(format_camera_file(golden_camera()) == file_contents(kGolden));
+  CHECK(format_camera_file(golden_camera()) == read_file(kGolden));
 }
 
 TEST_CASE("a written camera file has every key that camera_calibration_parsers demands") {
@@ -95,7 +96,7 @@ TEST_CASE("an OpenCV FileStorage camera file is read") {
 
 TEST_CASE("four coefficients mean that the fifth is zero") {
   const std::string text =
-      replaced(replaced(file_contents(kGolden), "cols: 5", "cols: 4"), ", -0.012]", "]");
+      replaced(replaced(read_file(kGolden), "cols: 5", "cols: 4"), ", -0.012]", "]");
   const CameraFile file = parse_camera_file(text, "camera.yaml");
   CHECK(file.camera.distortion.p2 == -0.00001);
   CHECK(file.camera.distortion.k3 == 0);
@@ -105,15 +106,15 @@ TEST_CASE("numbers survive writing and reading exactly") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> coefficient(-1, 1);
   std::uniform_real_distribution<double> focal(1e-3, 1e5);
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   for (int i = 0; i < 20; ++i) {
     CameraFile file = golden_camera();
     file.camera.fx = focal(random);
     file.camera.cx = focal(random);
     file.camera.distortion = {coefficient(random), coefficient(random) * 1e-9, coefficient(random),
                               coefficient(random), coefficient(random) * 1e9};
-    write_camera_file(folder.path("camera.yaml"), file);
-    check_same(read_camera_file(folder.path("camera.yaml")).camera, file.camera);
+    write_camera_file(folder.file("camera.yaml"), file);
+    check_same(read_camera_file(folder.file("camera.yaml")).camera, file.camera);
   }
 }
 
@@ -153,13 +154,12 @@ TEST_CASE("other lens models are refused by their name") {
   CHECK(error_with("distortion_model: plumb_bob", "distortion_model: equidistant") ==
         "camera.yaml:8:19: distortion_model: \"equidistant\" is not supported; calibrate with "
         "plumb_bob (k1, k2, p1, p2 and optionally k3)");
-  const std::string eight = replaced(replaced(file_contents(kGolden), "cols: 5", "cols: 8"),
-                                     "-0.012]", "-0.012, 0.1, 0.2, 0.3]");
+  const std::string eight = replaced(replaced(read_file(kGolden), "cols: 5", "cols: 8"), "-0.012]",
+                                     "-0.012, 0.1, 0.2, 0.3]");
   const std::string error = error_of([&] { parse_camera_file(eight, "camera.yaml"); });
   CHECK(error.find("8 coefficients (rational_polynomial model) are not supported") !=
         std::string::npos);
-  const std::string fisheye =
-      replaced(file_contents(kOpenCv), "fisheye_model: 0", "fisheye_model: 1");
+  const std::string fisheye = replaced(read_file(kOpenCv), "fisheye_model: 0", "fisheye_model: 1");
   CHECK(error_of([&] {
           parse_camera_file(fisheye, "camera.yaml");
         }).find("fisheye is not supported") != std::string::npos);
@@ -173,7 +173,7 @@ TEST_CASE("a camera file of another resolution gets one clear error") {
 }
 
 TEST_CASE("damaged camera files are errors, never crashes") {
-  const std::string golden = file_contents(kGolden), opencv = file_contents(kOpenCv);
+  const std::string golden = read_file(kGolden), opencv = read_file(kOpenCv);
   constexpr std::string_view kNasty = "{}[]:,-&*!|>'\"%@`#?\n\t 0.eE~<\\";
   std::mt19937 random(11);
   int accepted = 0;

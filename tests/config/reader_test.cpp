@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "config/default_yaml.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace roundel;
 
@@ -170,7 +171,7 @@ TEST_CASE("broken, huge and deep YAML are errors") {
 }
 
 TEST_CASE("a file is read with its name in the errors") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string good = folder.write("good.yaml", "simulator: {robots: 2}\n");
   CHECK(read_configuration(good).values.simulator.robots == 2);
   const std::string bad = folder.write("bad.yaml", "\nrobots: 2\n");

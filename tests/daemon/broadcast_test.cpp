@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/sample_markers.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/temporary_directory.hpp"
 #include "transport/clock.hpp"
 #include "transport/lcm_url.hpp"
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "tests/daemon/wait_for_descriptor.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 #include "transport/clock.hpp"
 
 using namespace roundel;
@@ -50,14 +51,14 @@ Played play(FilesSource& source, std::size_t most = 1000) {
 }  // namespace
 
 TEST_CASE("images, folders and videos are played in order, without leaving any out") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string image = folder.write("z.pgm", pgm(4, 2, 10));
   const std::string video = folder.write("v.y4m", y4m(3, 20));
-  const TemporaryFolder images;
+  const TemporaryDirectory images;
   images.write("b.pgm", pgm(4, 2, 31));
   images.write("a.PGM", pgm(4, 2, 30));
   images.write("notes.txt", "not an image");
-  FilesSource source({{image, video, images.path(""), image}, 0, false});
+  FilesSource source({{image, video, images.file(""), image}, 0, false});
   CHECK(source.width() == 4);
   CHECK(source.height() == 2);
   const Played played = play(source);
@@ -69,7 +70,7 @@ TEST_CASE("images, folders and videos are played in order, without leaving any o
 }
 
 TEST_CASE("a loop starts again at the first file") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   FilesSource source(
       {{folder.write("a.pgm", pgm(2, 2, 1)), folder.write("b.y4m", y4m(1, 2))}, 0, true});
   CHECK(play(source, 5).greys == std::vector<int>{1, 2, 1, 2, 1});
@@ -77,7 +78,7 @@ TEST_CASE("a loop starts again at the first file") {
 }
 
 TEST_CASE("a frame that can't be read is left out, counted and told at the end") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string good = folder.write("a.pgm", pgm(2, 2, 1));
   const std::string bad = folder.write("b.pgm", "P5 2 2 255\nx");
   const std::string cut = folder.write("c.y4m", y4m(2, 5).substr(0, 50));
@@ -90,7 +91,7 @@ TEST_CASE("a frame that can't be read is left out, counted and told at the end")
 }
 
 TEST_CASE("a loop over files that have all become unreadable ends") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string path = folder.write("a.pgm", pgm(2, 2, 1));
   FilesSource source({{path}, 0, true});
   CHECK(play(source, 1).greys.size() == 1);
@@ -101,19 +102,19 @@ TEST_CASE("a loop over files that have all become unreadable ends") {
 }
 
 TEST_CASE("what can't be played at all is refused with its name") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const auto error = [](const std::vector<std::string>& paths) {
     return error_of([&] { FilesSource({paths, 0, false}); });
   };
-  CHECK(error({folder.path("none.png")}) == folder.path("none.png") + ": no such file or folder");
-  CHECK(error({folder.path("")}).find("no images") != std::string::npos);
-  CHECK(error({folder.write("a.png", "text")}).starts_with(folder.path("a.png")));
-  CHECK(error({folder.write("a.y4m", "text")}).starts_with(folder.path("a.y4m")));
+  CHECK(error({folder.file("none.png")}) == folder.file("none.png") + ": no such file or folder");
+  CHECK(error({folder.file("")}).find("no images") != std::string::npos);
+  CHECK(error({folder.write("a.png", "text")}).starts_with(folder.file("a.png")));
+  CHECK(error({folder.write("a.y4m", "text")}).starts_with(folder.file("a.y4m")));
   CHECK(error({}) == "no files to play");
 }
 
 TEST_CASE("a frame rate is not exceeded") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   FilesSource source({{folder.write("a.y4m", y4m(5, 1))}, 200, false});
   const std::int64_t start_ns = monotonic_ns();
   CHECK(play(source).greys.size() == 5);

@@ -5,7 +5,7 @@
 
 #include "config/default_yaml.hpp"
 #include "tests/child_process.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace roundel;
 
@@ -40,7 +40,7 @@ TEST_CASE("--print-config prints the commented default, which is right as it is"
   const Finished printed = roundeld({"--print-config"});
   CHECK(printed.status == 0);
   CHECK(printed.output == default_yaml());
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string path = folder.write("roundel.yaml", printed.output);
   const Finished checked = roundeld({"--check-config", "--config", path});
   CHECK(checked.status == 0);
@@ -54,7 +54,7 @@ TEST_CASE("--help and --version end with 0") {
 }
 
 TEST_CASE("a wrong configuration ends with 2 and one line with file, line and column") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string path = folder.write("roundel.yaml", "simulator:\n  robot: 3\n");
   for (const bool only_check : {true, false}) {
     std::vector<std::string> arguments = {"--config", path};
@@ -62,7 +62,7 @@ TEST_CASE("a wrong configuration ends with 2 and one line with file, line and co
     check_refused(roundeld(arguments), 2,
                   path + ":2:3: simulator.robot: unknown key (did you mean simulator.robots?)");
   }
-  check_refused(roundeld({"--config", folder.path("none.yaml")}), 2, "can't be opened");
+  check_refused(roundeld({"--config", folder.file("none.yaml")}), 2, "can't be opened");
 }
 
 TEST_CASE("wrong usage ends with 2 and one line") {
@@ -74,7 +74,7 @@ TEST_CASE("wrong usage ends with 2 and one line") {
 }
 
 TEST_CASE("an unusable LCM URL is refused with its place before anything starts") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string path = folder.write("roundel.yaml", "lcm:\n  url: udpm://10.0.0.1:7667\n");
   for (const char* mode : {"--check-config", "--set=camera.name=a"}) {
     check_refused(roundeld({"--config", path, mode}), 2,
@@ -89,7 +89,7 @@ TEST_CASE("robots that do not fit into the arena are refused") {
 }
 
 TEST_CASE("a camera file of another resolution ends with 1 and one line that names both") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string camera = folder.write("camera.yaml", kSmallCamera);
   check_refused(roundeld({"--check-config", "--set", "camera.calibration=" + camera}), 1,
                 camera + ": calibrated at 640x480, but the frames are 1920x1080");
@@ -103,8 +103,8 @@ TEST_CASE("a camera file of another resolution ends with 1 and one line that nam
 }
 
 TEST_CASE("a recording that can't be opened ends with 1 and one line") {
-  const TemporaryFolder folder;
-  const std::string none = folder.path("none.png");
+  const TemporaryDirectory folder;
+  const std::string none = folder.file("none.png");
   check_refused(roundeld({"--set", "source=files", "--set", "files.paths=[" + none + "]", "--set",
                           "lcm.url=memq://"}),
                 1, none + ": no such file");
@@ -112,7 +112,7 @@ TEST_CASE("a recording that can't be opened ends with 1 and one line") {
 
 TEST_CASE(
     "a recording is played to its end, and the status tells whether all of it could be read") {
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   const std::string good = folder.write("a.pgm", "P5 20 20 255\n" + std::string(400, 'x'));
   const std::string bad = folder.write("b.pgm", "P5 20 20 255\nx");
   const auto play = [&](const std::string& paths) {

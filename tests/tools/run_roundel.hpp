@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/temporary_folder.hpp"
+#include "tests/temporary_directory.hpp"
 
 namespace roundel {
 
@@ -20,12 +20,12 @@ struct CommandResult {
 
 // Runs a shell command, its standard input empty unless it says otherwise.
 inline CommandResult run_command(const std::string& command) {
-  const TemporaryFolder folder;
+  const TemporaryDirectory directory;
   const std::string line =
-      "{ " + command + "; } </dev/null >" + folder.path("out") + " 2>" + folder.path("err");
+      "{ " + command + "; } </dev/null >" + directory.file("out") + " 2>" + directory.file("err");
   const int status = std::system(line.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_contents(folder.path("out")),
-          file_contents(folder.path("err"))};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(directory.file("out")),
+          read_file(directory.file("err"))};
 }
 
 // Runs the real program.

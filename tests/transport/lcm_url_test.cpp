@@ -4,7 +4,8 @@
 
 #include <string>
 
-#include "tests/temporary_folder.hpp"
+#include "tests/error_of.hpp"
+#include "tests/temporary_directory.hpp"
 #include "transport/lcm_link.hpp"
 
 using namespace roundel;
