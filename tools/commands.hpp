@@ -16,5 +16,6 @@ void add_detect(CLI::App& app);
 void add_track(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_markers(CLI::App& app);
+void add_listen(CLI::App& app);
 
 }  // namespace roundel

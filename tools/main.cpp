@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   roundel::add_track(app);
   roundel::add_simulate(app);
   roundel::add_markers(app);
+  roundel::add_listen(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
