@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   roundel::add_detect(app);
   roundel::add_track(app);
   roundel::add_simulate(app);
+  roundel::add_compare(app);
   roundel::add_markers(app);
   try {
     app.parse(argc, argv);
