@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   roundel::add_detect(app);
   roundel::add_track(app);
   roundel::add_simulate(app);
+  roundel::add_compare(app);
   roundel::add_markers(app);
   roundel::add_listen(app);
   try {
