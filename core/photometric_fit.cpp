@@ -24,7 +24,8 @@ constexpr double kSlopePrior = 0.3;  // of the light, share a radius
 constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
-constexpr double kRobust = 3.0;  // residuals beyond so many deviations lose weight
+// Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
+constexpr double kRobust = 3.0, kOutlier = 8.0;
 
 }  // namespace
 
@@ -102,7 +103,7 @@ bool PhotometricFit::load(const LumaView& frame, const CameraModel& camera, cons
 }
 
 PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pattern,
-                                          double robust_scale) const {
+                                          double deviation) const {
   const Eigen::Matrix3d axes = state.pose.orientation.toRotationMatrix();
   Eigen::Matrix3d to_image;
   to_image << radius_m_ * axes.col(0), radius_m_ * axes.col(1), state.pose.position;
@@ -134,7 +135,8 @@ PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pat
     const bool bit = ((pattern.word >> (pattern.bits - 1 - k / 2)) & 1U) != 0;
     m.colours[static_cast<std::size_t>(k)] = bit == (k % 2 == 0) ? 1.0F : 0.0F;
   }
-  m.robust_scale = static_cast<float>(robust_scale);
+  m.robust_scale = static_cast<float>(kRobust * deviation);
+  m.outlier = static_cast<float>(kOutlier * deviation);
   return m;
 }
 
@@ -189,7 +191,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const Pose& start, const Patt
               0,     look.blur_px, look.shift_px,      pattern.inner_ratio};
   double deviation = 0.15 * levels_.contrast();  // of residuals; generous for the first step
   for (int step = 1;; ++step) {
-    const PhotometricModel model = model_of(state, pattern, kRobust * deviation);
+    const PhotometricModel model = model_of(state, pattern, deviation);
     PhotometricSums sums;
     add_outer_pixels(model, outer_.view(), sums);
     if (pattern.kind != Pattern::Kind::kUnknown) add_inner_pixels(model, inner_.view(), sums);

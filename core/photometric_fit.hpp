@@ -83,7 +83,7 @@ class PhotometricFit {
     double dark, contrast, slope_x, slope_y, blur, shift, inner;
   };
 
-  PhotometricModel model_of(const State& state, const Pattern& pattern, double robust_scale) const;
+  PhotometricModel model_of(const State& state, const Pattern& pattern, double deviation) const;
   void add_priors(const State& state, const Pattern& pattern, const EdgeLook& look, double variance,
                   Matrix& normal_matrix, Vector& right_side) const;
   State advanced(const State& state, const Vector& step) const;

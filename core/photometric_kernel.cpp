@@ -182,9 +182,9 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
     const Float8 print = m.dark + m.contrast * e.bright;
     const Float8 residual = load(pixels.grey) - light * print;
     const Float8 size = simd::abs(residual);
-    const Float8 weight =
-        load(pixels.weight) *
+    const Float8 trust =
         simd::select(size > m.robust_scale, m.robust_scale / (size + 1e-9F), splat(1));
+    const Float8 weight = load(pixels.weight) * simd::select(size > m.outlier, splat(0), trust);
 
     const Float8 gain = light * m.contrast;
     const Float8 by_x = gain * (e.by_radius * p.cosine - e.by_arc * p.sine);
@@ -267,25 +267,30 @@ __attribute__((target("avx2"))) void add_inner_avx2(const PhotometricModel& m,
 }
 #endif
 
-Kernels choose() {
+constexpr Kernels kBaseline{add_outer_baseline, add_inner_baseline};
+
+Kernels best_kernels() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2")) return {add_outer_avx2, add_inner_avx2};
 #endif
-  return {add_outer_baseline, add_inner_baseline};
+  return kBaseline;
 }
 
-const Kernels kKernels = choose();
+const Kernels& kernels(VectorUnit unit) {
+  static const Kernels kBest = best_kernels();
+  return unit == VectorUnit::kBest ? kBest : kBaseline;
+}
 
 }  // namespace
 
 void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels,
-                      PhotometricSums& sums) {
-  kKernels.outer(model, pixels, sums);
+                      PhotometricSums& sums, VectorUnit unit) {
+  kernels(unit).outer(model, pixels, sums);
 }
 
 void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels,
-                      PhotometricSums& sums) {
-  kKernels.inner(model, pixels, sums);
+                      PhotometricSums& sums, VectorUnit unit) {
+  kernels(unit).inner(model, pixels, sums);
 }
 
 }  // namespace roundel

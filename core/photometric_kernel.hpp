@@ -48,6 +48,7 @@ struct PhotometricModel {
   int halves;                               // half-teeth of the code, 0 without
   std::array<float, 2 * kMaxBits> colours;  // of the half-teeth, 1 bright, 0 dark
   float robust_scale;                       // residuals beyond it lose weight, grey levels
+  float outlier;                            // residuals beyond it count for nothing
 };
 
 // The lower triangle of the normal matrix, row by row, and the rest of the normal equations.
@@ -57,11 +58,16 @@ struct PhotometricSums {
   float squares = 0, weights = 0;  // of the weighted residuals
 };
 
-// Adds the equations of pixels on the outer rim and of those around the inner edges. The same to
-// the bit whatever the processor; the widest vector unit there is is used.
+// Which vector instructions are used; the results are the same to the bit.
+enum class VectorUnit {
+  kBest,     // the widest that the processor has
+  kBaseline  // what every processor of the platform has
+};
+
+// Adds the equations of pixels on the outer rim and of those around the inner edges.
 void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels,
-                      PhotometricSums& sums);
+                      PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
 void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels,
-                      PhotometricSums& sums);
+                      PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
 
 }  // namespace roundel

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -32,6 +33,7 @@ int run(const roundel::CommandLine& command) {
     check(command.load());
     return kSuccess;
   }
+  ::signal(SIGPIPE, SIG_IGN);  // a closed log must not end it
   roundel::SignalDescriptor signals;
   return roundel::Daemon([&] { return command.load(); }, signals).run();
 }

@@ -7,7 +7,7 @@ namespace roundel {
 enum class SignalEvent { kNone, kStop, kReload };
 
 // SIGINT, SIGTERM and SIGHUP as something to poll for. Made once, before any other thread: the
-// signals are blocked from then on, and SIGPIPE is ignored.
+// signals are blocked from then on.
 class SignalDescriptor {
  public:
   SignalDescriptor();

@@ -27,61 +27,21 @@ constexpr double kBarLength = 1.6, kBarWidth = 0.08, kBarHeight = 0.4;  // metre
 constexpr double kBarSpeed = 0.25;                                      // m/s
 constexpr double kBarGrey = 60;
 
-void require(bool holds, const std::string& message) {
-  if (!holds) throw std::invalid_argument(message);
+std::vector<Eigen::Vector2d> corners_of(const ArenaOptions& o) {
+  if (!o.corners) return {};
+  return {{0, 0}, {o.length_m, 0}, {o.length_m, o.width_m}, {0, o.width_m}};
 }
 
-void check(const ArenaOptions& o) {
-  require(o.image_width >= 16 && o.image_height >= 16, "the image must be at least 16 x 16 pixels");
-  require(o.frame_rate > 0 && o.frame_rate <= 10000, "frame_rate must lie in (0, 10000]");
-  require(o.robots >= 0 && o.robots <= 5000, "robots must lie between 0 and 5000");
-  require(o.diameter_m > 0 && o.diameter_m < 10, "diameter_m must lie in (0, 10) m");
-  require(o.plate_ratio >= 1 && o.plate_ratio < 10, "plate_ratio must lie in [1, 10)");
-  require(o.length_m > 0 && o.width_m > 0 && o.length_m <= 100 && o.width_m <= 100,
-          "length_m and width_m must lie in (0, 100] m");
-  require(
-      o.min_height_m >= 0 && o.max_height_m >= o.min_height_m && o.max_height_m < o.camera_height_m,
-      "marker heights must rise from 0 to below the camera: min_height_m <= max_height_m < "
-      "camera_height_m");
-  require(std::abs(o.camera_tilt) < 1.2, "camera_tilt must lie within 1.2 rad");
-  require(o.max_speed >= 0 && o.max_speed <= 5, "max_speed must lie between 0 and 5 m/s");
-  require(o.max_turn_rate >= 0 && o.max_turn_rate <= 10, "max_turn_rate must lie in [0, 10] rad/s");
-}
-
-// The ids that the markers wear: robots' first, then the corners' if those have codes.
-std::vector<int> worn_ids(const ArenaOptions& options) {
-  const auto robots = static_cast<std::size_t>(options.robots);
-  const std::size_t corners = options.corners && options.corner_kind == MarkerKind::WhyCode ? 4 : 0;
-  if (options.bits == 0) {
-    require(corners == 0, "corner markers with codes need bits between 2 and 16");
-    require(options.robot_ids.empty(),
-            "robot_ids cannot be worn by markers without a code (bits 0)");
-    return {};
-  }
-  const NecklaceCode code(options.bits, options.hamming);
-  const auto name = [&] {
-    return std::to_string(options.bits) + "-bit codes with Hamming distance " +
-           std::to_string(options.hamming) + " have " + std::to_string(code.id_count());
-  };
-  std::vector<int> ids = options.robot_ids;
-  require(ids.empty() || ids.size() == robots, "robot_ids has " + std::to_string(ids.size()) +
-                                                   " ids for " + std::to_string(robots) +
-                                                   " robots; give one a robot, or none");
-  for (const int id : ids) {
-    require(code.word(id).has_value(), "id " + std::to_string(id) + " does not exist: " + name());
-  }
-  int next = ids.empty() ? 1 : *std::max_element(ids.begin(), ids.end()) + 1;
-  while (ids.size() < robots + corners) ids.push_back(next++);
-  if (ids.empty() || ids.back() <= code.id_count()) return ids;
-
-  std::string message = "the markers need " + std::to_string(ids.back()) + " ids, but " + name();
-  for (int bits = options.bits + 1; bits <= kMaxBits; ++bits) {
-    const int count = NecklaceCode(bits, options.hamming).id_count();
-    if (count < ids.back()) continue;
-    throw std::invalid_argument(message + "; " + std::to_string(bits) + " bits would do (" +
-                                std::to_string(count) + " ids)");
-  }
-  throw std::invalid_argument(message + ", and no code up to 16 bits has so many");
+SwarmOptions swarm_options_of(const ArenaOptions& o) {
+  return {.robots = o.robots,
+          .length_m = o.length_m,
+          .width_m = o.width_m,
+          .radius_m = 0.5 * o.diameter_m * o.plate_ratio,
+          .max_speed = o.max_speed,
+          .max_turn_rate = o.max_turn_rate,
+          .close_passes = o.close_passes,
+          .obstacles = corners_of(o),
+          .seed = derived_seed(o.seed, kMotion)};
 }
 
 }  // namespace
@@ -99,56 +59,33 @@ struct Arena::Impl {
   }
 
   ArenaOptions options;
+  std::vector<int> worn;
   Pose arena_in_camera;
   CameraModel camera;
-  std::size_t corners = 0;
   std::vector<Eigen::Vector2d> corner_places;
-  SwarmOptions swarm_options;
-  Swarm start, swarm;
-  std::vector<double> heights;
+  std::size_t corners = 0;  // how many of `markers` they are
+  Swarm start, swarm;       // at frame 0; at `frame`
   Renderer renderer;
 
   std::int64_t frame = 0;
   std::vector<SceneMarker> markers;  // corners first, then robots
   std::vector<int> ids;              // of `markers`
+  std::vector<double> heights;       // of `markers`, above the floor
   std::vector<std::size_t> order;    // of painting: by height, the highest last
   Scene scene;
   FrameTruth truth;
   std::vector<ImageOutline> discs, plates;  // of `markers`
 };
 
-namespace {
-
-std::vector<Eigen::Vector2d> corner_places(const ArenaOptions& o) {
-  if (!o.corners) return {};
-  return {{0, 0}, {o.length_m, 0}, {o.length_m, o.width_m}, {0, o.width_m}};
-}
-
-SwarmOptions swarm_options_of(const ArenaOptions& o) {
-  check(o);
-  return {.robots = o.robots,
-          .length_m = o.length_m,
-          .width_m = o.width_m,
-          .radius_m = 0.5 * o.diameter_m * o.plate_ratio,
-          .max_speed = o.max_speed,
-          .max_turn_rate = o.max_turn_rate,
-          .close_passes = o.close_passes,
-          .obstacles = corner_places(o),
-          .seed = derived_seed(o.seed, kMotion)};
-}
-
-}  // namespace
-
 Arena::Impl::Impl(const ArenaOptions& the_options)
-    : options(the_options),
-      arena_in_camera(arena_in_ceiling_camera(the_options)),
-      camera((check(the_options), arena_camera(the_options, arena_in_camera))),
-      corner_places(roundel::corner_places(the_options)),
-      swarm_options(swarm_options_of(the_options)),
-      start(swarm_options),
+    : options(checked(the_options)),
+      worn(worn_ids(options)),
+      arena_in_camera(arena_in_ceiling_camera(options)),
+      camera(arena_camera(options, arena_in_camera)),
+      corner_places(corners_of(options)),
+      start(swarm_options_of(options)),
       swarm(start),
-      renderer(camera, the_options.imaging) {
-  const std::vector<int> worn = worn_ids(options);
+      renderer(camera, options.imaging) {
   const auto robots = static_cast<std::size_t>(options.robots);
   corners = corner_places.size();
 

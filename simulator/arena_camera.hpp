@@ -2,7 +2,7 @@
 
 #include "core/camera_model.hpp"
 #include "core/pose.hpp"
-#include "simulator/arena.hpp"
+#include "simulator/arena_options.hpp"
 
 namespace roundel {
 

@@ -169,6 +169,16 @@ bool Figure::measure(const CameraModel& camera) {
   return true;
 }
 
+// Where a point of the figure's plane lies on the drawing grid. measure() has made sure that it
+// projects.
+Eigen::Vector2d Figure::on_grid(const Eigen::Vector2d& p, const Instant& instant,
+                                const CameraModel& camera, const FineFrame& frame) {
+  const Eigen::Vector3d x = instant.origin + p.x() * instant.x_axis + p.y() * instant.y_axis;
+  const Eigen::Vector2d pixel = camera.to_pixel(camera.distort(x.head<2>() / x.z()));
+  return {(pixel.x() - frame.left + 0.5) * frame.factor,
+          (pixel.y() - frame.top + 0.5) * frame.factor};
+}
+
 void Figure::draw(const CameraModel& camera, const FineFrame& frame, CoverageGrid& base,
                   CoverageGrid& print) const {
   // Outlines run counter-clockwise on the face, which subtracts: see CoverageGrid.
@@ -186,25 +196,14 @@ void Figure::draw(const CameraModel& camera, const FineFrame& frame, CoverageGri
     const int per_half = (corners_for(outer_px) + 2 * bits_ - 1) / (2 * bits_);
     print.begin(share * static_cast<double>(code_light_));
     emit_code(word_, bits_, std::max(per_half, 2), pieces_for(0.5 * outer_px), code_radius_,
-              [&](const Eigen::Vector2d& p) {
-                const Eigen::Vector3d x =
-                    instant.origin + p.x() * instant.x_axis + p.y() * instant.y_axis;
-                const Eigen::Vector2d pixel = camera.to_pixel(camera.distort(x.head<2>() / x.z()));
-                print.add({(pixel.x() - frame.left + 0.5) * frame.factor,
-                           (pixel.y() - frame.top + 0.5) * frame.factor});
-              });
+              [&](const Eigen::Vector2d& p) { print.add(on_grid(p, instant, camera, frame)); });
     print.end();
   }
 }
 
 void Figure::draw_layer(const Layer& layer, const Instant& instant, const CameraModel& camera,
                         const FineFrame& frame, double weight, CoverageGrid& grid) const {
-  const auto take = [&](const Eigen::Vector2d& p) {
-    const Eigen::Vector3d x = instant.origin + p.x() * instant.x_axis + p.y() * instant.y_axis;
-    const Eigen::Vector2d pixel = camera.to_pixel(camera.distort(x.head<2>() / x.z()));
-    grid.add({(pixel.x() - frame.left + 0.5) * frame.factor,
-              (pixel.y() - frame.top + 0.5) * frame.factor});
-  };
+  const auto take = [&](const Eigen::Vector2d& p) { grid.add(on_grid(p, instant, camera, frame)); };
   const Eigen::Vector2d centre(layer.centre_x, layer.centre_y);
   const double larger_px = std::max(layer.width, layer.height) * pixels_per_m_;
   grid.begin(weight);

@@ -70,6 +70,8 @@ class Figure {
              double exposure_s, const CameraModel& camera);
   bool measure(const CameraModel& camera);
   Instant at(double time_s) const;
+  static Eigen::Vector2d on_grid(const Eigen::Vector2d& p, const Instant& instant,
+                                 const CameraModel& camera, const FineFrame& frame);
   void draw_layer(const Layer& layer, const Instant& instant, const CameraModel& camera,
                   const FineFrame& frame, double weight, CoverageGrid& grid) const;
 

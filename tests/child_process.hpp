@@ -17,6 +17,7 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
+  int pid() const { return pid_; }
   void signal(int number) const;
 
   // Waits until the program has written the text (to either stream) after what was waited for

@@ -148,19 +148,17 @@ TEST_CASE("a wrong configuration at SIGHUP changes nothing, a right one takes ef
 
 TEST_CASE("roundeld started before the network waits for it") {
   if (!multicast_is_private()) return;
-  // A network namespace that has no route yet, with a shell that makes one when it is told.
-  const TemporaryDirectory folder;
-  const std::string go = folder.file("go");
-  const std::string script =
-      "mkfifo " + go + "; " + std::string(ROUNDELD_BINARY) +
-      " --set simulator.width=320 --set simulator.height=240 --set simulator.clutter=false & "
-      "read line < " +
-      go + "; ip link set lo up; ip route add 239.0.0.0/8 dev lo; wait";
-  ChildProcess shell({"/usr/bin/unshare", "-n", "/bin/sh", "-c", script});
-  REQUIRE(shell.wait_for("trying again", kPatience));
-  CHECK(shell.errors().find("no route to the multicast group 239.255.76.67") != std::string::npos);
-  std::ofstream(go) << "go\n";
-  CHECK(shell.wait_for("the network is there", kPatience));
+  // A network namespace of its own that has no route yet; unshare becomes roundeld.
+  ChildProcess daemon({"/usr/bin/unshare", "-n", ROUNDELD_BINARY, "--set", "simulator.width=320",
+                       "--set", "simulator.height=240", "--set", "simulator.clutter=false"});
+  REQUIRE(daemon.wait_for("trying again", kPatience));
+  CHECK(daemon.errors().find("no route to the multicast group 239.255.76.67") != std::string::npos);
+  const std::string inside = "nsenter -n -t " + std::to_string(daemon.pid()) + " ip ";
+  REQUIRE(std::system((inside + "link set lo up").c_str()) == 0);
+  REQUIRE(std::system((inside + "route add 239.0.0.0/8 dev lo").c_str()) == 0);
+  CHECK(daemon.wait_for("the network is there", kPatience));
+  daemon.signal(SIGTERM);
+  CHECK(daemon.wait(kPatience) == 0);
 }
 
 TEST_CASE("a recording is sent frame by frame to its end") {

@@ -51,8 +51,8 @@ bool contains(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("frames written as y4m come back unchanged") {
-  const TemporaryDirectory folder;
-  const std::string path = folder.file("a.y4m");
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.y4m");
   Y4mWriter writer(path, 31, 17, 25);
   for (unsigned i = 0; i < 5; ++i) {
     writer.write(random_picture(31, 17, i).view());
@@ -72,18 +72,21 @@ TEST_CASE("frames written as y4m come back unchanged") {
 }
 
 TEST_CASE("the luma is taken and the chroma skipped in every colour space of 8 bits") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const GreyImage first = random_picture(5, 3, 1);  // odd sides: chroma planes are rounded up
   const GreyImage second = random_picture(5, 3, 2);
   const std::vector<std::pair<std::string, std::size_t>> spaces = {
       {"", 12},      {" C420", 12}, {" C420jpeg", 12}, {" C420mpeg2", 12}, {" C420paldv", 12},
       {" C411", 12}, {" C422", 18}, {" C444", 30},     {" C444alpha", 45}, {" Cmono", 0}};
-  for (const auto& [space, chroma_bytes] : spaces) {
+  for (const auto& entry : spaces) {
+    const std::string& space = entry.first;
     CAPTURE(space);
-    const std::string chroma(chroma_bytes, '\x55');
-    const auto frames = read_all(folder.write(
-        "a.y4m", "YUV4MPEG2 W5 H3 F30000:1001 It A0:0" + space + " XCOMMENT\nFRAME\n" +
-                     luma(first) + chroma + "FRAME Ippp XSOME\n" + luma(second) + chroma));
+    const std::string chroma(entry.second, '\x55');
+    std::string video = "YUV4MPEG2 W5 H3 F30000:1001 It A0:0";
+    video.append(space).append(" XCOMMENT\n");
+    video.append("FRAME\n").append(luma(first)).append(chroma);
+    video.append("FRAME Ippp XSOME\n").append(luma(second)).append(chroma);
+    const auto frames = read_all(directory.write("a.y4m", video));
     REQUIRE(frames.size() == 2);
     CHECK(frames[0].pixels == first.pixels);
     CHECK(frames[1].pixels == second.pixels);
@@ -91,11 +94,12 @@ TEST_CASE("the luma is taken and the chroma skipped in every colour space of 8 b
 }
 
 TEST_CASE("a wrong y4m header is refused with the reason") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const auto error = [&](const std::string& contents) {
-    return video_error(folder.write("a.y4m", contents));
+    return video_error(directory.write("a.y4m", contents));
   };
-  CHECK(contains(video_error(folder.file("none.y4m")), "none.y4m can't be opened: No such file"));
+  CHECK(
+      contains(video_error(directory.file("none.y4m")), "none.y4m can't be opened: No such file"));
   CHECK(contains(error(""), "a.y4m is empty"));
   CHECK(contains(error("\x89PNG\r\n..."), "is not y4m video: it does not start with YUV4MPEG2"));
   CHECK(contains(error("YUV4MPEG21 W5 H3\n"), "does not start with YUV4MPEG2"));
@@ -111,14 +115,14 @@ TEST_CASE("a wrong y4m header is refused with the reason") {
 }
 
 TEST_CASE("y4m cut short at any byte names the frame that is missing") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const GreyImage image = random_picture(5, 3, 1);
   const std::string header = "YUV4MPEG2 W5 H3 F30:1 C420\n";
   const std::string frame = "FRAME\n" + luma(image) + std::string(12, 'c');
   const std::string whole = header + frame + frame;
   for (std::size_t length = 0; length < whole.size(); ++length) {
     CAPTURE(length);
-    const std::string error = video_error(folder.write("a.y4m", whole.substr(0, length)));
+    const std::string error = video_error(directory.write("a.y4m", whole.substr(0, length)));
     if (length < header.size()) {
       CHECK(error != "");
     } else if (length == header.size() || length == header.size() + frame.size()) {
@@ -129,13 +133,13 @@ TEST_CASE("y4m cut short at any byte names the frame that is missing") {
       CHECK(contains(error, "a.y4m, frame 1, is truncated"));
     }
   }
-  CHECK(contains(video_error(folder.write("a.y4m", header + frame + "GARBAGE" + frame)),
+  CHECK(contains(video_error(directory.write("a.y4m", header + frame + "GARBAGE" + frame)),
                  "a.y4m, frame 1, does not start with FRAME"));
 }
 
 TEST_CASE("a frame of another size is not written into a video") {
-  const TemporaryDirectory folder;
-  Y4mWriter writer(folder.file("a.y4m"), 8, 8, 30);
+  const TemporaryDirectory directory;
+  Y4mWriter writer(directory.file("a.y4m"), 8, 8, 30);
   CHECK_THROWS_AS(writer.write(random_picture(8, 9, 1).view()), std::runtime_error);
 }
 

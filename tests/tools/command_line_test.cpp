@@ -22,12 +22,12 @@ distortion_model: plumb_bob
 distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}
 )";
 
-std::string grey_png(const TemporaryDirectory& folder, const char* name, int width, int height) {
+std::string grey_png(const TemporaryDirectory& directory, const char* name, int width, int height) {
   GreyImage image;
   image.resize(width, height);
   std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t{128});
-  save_png(folder.file(name), image.view());
-  return folder.file(name);
+  save_png(directory.file(name), image.view());
+  return directory.file(name);
 }
 
 std::string y4m(int width, int height, int frames) {
@@ -78,53 +78,54 @@ TEST_CASE("wrong usage ends with status 2 and one line") {
 }
 
 TEST_CASE("missing and damaged images end with status 1 and their name") {
-  const TemporaryDirectory folder;
-  const std::string png = grey_png(folder, "a.png", 640, 480);
+  const TemporaryDirectory directory;
+  const std::string png = grey_png(directory, "a.png", 640, 480);
   const std::string whole = read_file(png);
-  check_refused("detect " + folder.file("none.png"), 1, "none.png can't be opened: No such");
-  check_refused("detect " + folder.write("cut.png", whole.substr(0, whole.size() / 2)), 1,
+  check_refused("detect " + directory.file("none.png"), 1, "none.png can't be opened: No such");
+  check_refused("detect " + directory.write("cut.png", whole.substr(0, whole.size() / 2)), 1,
                 "cut.png is truncated or damaged");
-  check_refused("detect " + folder.write("text.png", "hello"), 1, "text.png is not an image");
-  check_refused("track " + folder.file("none.y4m"), 1, "none.y4m can't be opened");
-  check_refused("track " + folder.write("a.y4m", "YUV4MPEG2 W5\n"), 1, "a.y4m has no width");
+  check_refused("detect " + directory.write("text.png", "hello"), 1, "text.png is not an image");
+  check_refused("track " + directory.file("none.y4m"), 1, "none.y4m can't be opened");
+  check_refused("track " + directory.write("a.y4m", "YUV4MPEG2 W5\n"), 1, "a.y4m has no width");
   check_refused("track - </dev/null", 1, "standard input is empty");
 }
 
 TEST_CASE("frames before a damaged one are reported all the same") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const std::string video = y4m(64, 48, 3);
   const CommandResult result =
-      run_roundel("track --json " + folder.write("a.y4m", video.substr(0, video.size() - 10)));
+      run_roundel("track --json " + directory.write("a.y4m", video.substr(0, video.size() - 10)));
   CHECK(result.status == 1);
   CHECK(contains(result.err, "a.y4m, frame 2, is truncated"));
   CHECK(json_lines(result.out).size() == 2);
 }
 
 TEST_CASE("a camera file of another resolution is refused with both resolutions") {
-  const TemporaryDirectory folder;
-  const std::string camera = folder.write("camera.yaml", kCamera);
-  const std::string fitting = grey_png(folder, "fit.png", 640, 480);
-  const std::string other = grey_png(folder, "other.png", 320, 240);
+  const TemporaryDirectory directory;
+  const std::string camera = directory.write("camera.yaml", kCamera);
+  const std::string fitting = grey_png(directory, "fit.png", 640, 480);
+  const std::string other = grey_png(directory, "other.png", 320, 240);
   CHECK(run_roundel("detect --camera " + camera + " " + fitting).status == 0);
   check_refused("detect --camera " + camera + " " + other, 1, "320x240");
   check_refused("detect --camera " + camera + " " + other, 1, "640x480");
   check_refused("detect --camera " + camera + " " + other, 1, "other.png");
-  check_refused("detect --camera " + folder.file("none.yaml") + " " + other, 1, "none.yaml");
-  check_refused("detect --camera " + folder.write("bad.yaml", "a: [") + " " + other, 1, "bad.yaml");
+  check_refused("detect --camera " + directory.file("none.yaml") + " " + other, 1, "none.yaml");
+  check_refused("detect --camera " + directory.write("bad.yaml", "a: [") + " " + other, 1,
+                "bad.yaml");
 }
 
 TEST_CASE("frames of two sizes can be detected but not tracked") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const std::string files =
-      grey_png(folder, "a.png", 64, 48) + " " + grey_png(folder, "b.png", 48, 64);
+      grey_png(directory, "a.png", 64, 48) + " " + grey_png(directory, "b.png", 48, 64);
   CHECK(run_roundel("detect " + files).status == 0);
   check_refused("track " + files, 1, "b.png is 48x64 and follows frames of 64x48");
 }
 
 TEST_CASE("every frame of images, video and standard input is one JSON line") {
-  const TemporaryDirectory folder;
-  const std::string image = grey_png(folder, "a.png", 64, 48);
-  const std::string video = folder.write("v.y4m", y4m(64, 48, 3));
+  const TemporaryDirectory directory;
+  const std::string image = grey_png(directory, "a.png", 64, 48);
+  const std::string video = directory.write("v.y4m", y4m(64, 48, 3));
   const auto lines =
       json_lines(run_roundel("track --json " + image + " " + video + " - <" + video).out);
   REQUIRE(lines.size() == 7);
@@ -138,23 +139,24 @@ TEST_CASE("every frame of images, video and standard input is one JSON line") {
 }
 
 TEST_CASE("annotated pictures go to a file for one frame and to a directory for several") {
-  const TemporaryDirectory folder;
-  const std::string image = grey_png(folder, "a.png", 64, 48);
-  const std::string video = folder.write("v.y4m", y4m(64, 48, 2));
-  CHECK(run_roundel("detect --annotate " + folder.file("x.png") + " " + image).status == 0);
-  CHECK(load_image(folder.file("x.png")).width == 64);
-  CHECK(run_roundel("detect --annotate " + folder.file("d") + " " + image + " " + video).status ==
-        0);
-  CHECK(load_image(folder.file("d/a_found.png")).width == 64);
-  CHECK(load_image(folder.file("d/frame_000001.png")).width == 64);
-  CHECK(load_image(folder.file("d/frame_000002.png")).width == 64);
-  check_refused("detect --annotate " + folder.file("x.png") + " " + video, 2,
+  const TemporaryDirectory directory;
+  const std::string image = grey_png(directory, "a.png", 64, 48);
+  const std::string video = directory.write("v.y4m", y4m(64, 48, 2));
+  CHECK(run_roundel("detect --annotate " + directory.file("x.png") + " " + image).status == 0);
+  CHECK(load_image(directory.file("x.png")).width == 64);
+  CHECK(
+      run_roundel("detect --annotate " + directory.file("d") + " " + image + " " + video).status ==
+      0);
+  CHECK(load_image(directory.file("d/a_found.png")).width == 64);
+  CHECK(load_image(directory.file("d/frame_000001.png")).width == 64);
+  CHECK(load_image(directory.file("d/frame_000002.png")).width == 64);
+  check_refused("detect --annotate " + directory.file("x.png") + " " + video, 2,
                 "several frames need a directory");
 }
 
 TEST_CASE("output that can't be written is an error") {
-  const TemporaryDirectory folder;
-  const std::string image = grey_png(folder, "a.png", 64, 48);
+  const TemporaryDirectory directory;
+  const std::string image = grey_png(directory, "a.png", 64, 48);
   check_refused("detect --json " + image + " >/dev/full", 1, "standard output can't be written");
   check_refused("markers --id 1 -o /proc/m.pdf", 1, "/proc/m.pdf can't be written");
   check_refused("markers --id 1 -o /proc/m.svg", 1, "/proc/m.svg can't be written");
@@ -163,49 +165,50 @@ TEST_CASE("output that can't be written is an error") {
 }
 
 TEST_CASE("sheets of several pages become one PDF or numbered pictures") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const auto make = [&](const std::string& name) {
-    return run_roundel("markers --ids 1-10 --dpi 50 -o " + folder.file(name)).status;
+    return run_roundel("markers --ids 1-10 --dpi 50 -o " + directory.file(name)).status;
   };
   REQUIRE(make("m.pdf") == 0);
-  CHECK(contains(run_command("pdfinfo " + folder.file("m.pdf")).out, "Pages:           10"));
+  CHECK(contains(run_command("pdfinfo " + directory.file("m.pdf")).out, "Pages:           10"));
   REQUIRE(make("m.png") == 0);
   REQUIRE(make("m.svg") == 0);
   for (const char* name : {"m-01.png", "m-10.png", "m-01.svg", "m-10.svg"}) {
-    CHECK(std::filesystem::exists(folder.file(name)));
+    CHECK(std::filesystem::exists(directory.file(name)));
   }
-  CHECK_FALSE(std::filesystem::exists(folder.file("m.png")));
+  CHECK_FALSE(std::filesystem::exists(directory.file("m.png")));
 }
 
 TEST_CASE("a directory gets one file a marker") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   REQUIRE(run_roundel("markers --bits 5 --all --paper none --dpi 50 --format png -o " +
-                      folder.file("all/"))
+                      directory.file("all/"))
               .status == 0);
   for (int id = 1; id <= 6; ++id) {
-    const GreyImage image = load_image(folder.file("all/5bits_id" + std::to_string(id) + ".png"));
+    const GreyImage image =
+        load_image(directory.file("all/5bits_id" + std::to_string(id) + ".png"));
     CHECK(image.width == 309);  // 122 mm * 899 / 700 at 50 dpi
   }
 }
 
 TEST_CASE("a PNG of a marker has the number of pixels asked for") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   for (const int pixels : {16, 101, 899}) {
     REQUIRE(run_roundel("markers --id 1 --pixels " + std::to_string(pixels) + " -o " +
-                        folder.file("m.png"))
+                        directory.file("m.png"))
                 .status == 0);
-    const GreyImage image = load_image(folder.file("m.png"));
+    const GreyImage image = load_image(directory.file("m.png"));
     CHECK(image.width == pixels);
     CHECK(image.height == pixels);
   }
 }
 
 TEST_CASE("a plain marker has the reference ratio unless told otherwise") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const auto white_share = [&](const std::string& ratio) {
-    REQUIRE(run_roundel("markers --plain " + ratio + " --pixels 1798 -o " + folder.file("m.png"))
+    REQUIRE(run_roundel("markers --plain " + ratio + " --pixels 1798 -o " + directory.file("m.png"))
                 .status == 0);
-    const GreyImage image = load_image(folder.file("m.png"));
+    const GreyImage image = load_image(directory.file("m.png"));
     int white = 0;  // along the row through the centre, black disc of 1400 pixels
     for (int u = 199; u < 1599; ++u) {
       white += image.view().at(u, 899) > 128 ? 1 : 0;

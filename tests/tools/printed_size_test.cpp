@@ -69,37 +69,37 @@ void check_diameter(const Disc& disc, double diameter_mm) {
   CHECK(std::abs(disc.diameter_max / kPixelsPerMm - diameter_mm) < 0.02);
 }
 
-GreyImage render_pdf(const TemporaryDirectory& folder, const std::string& pdf, int page) {
+GreyImage render_pdf(const TemporaryDirectory& directory, const std::string& pdf, int page) {
   const CommandResult result =
       run_command("pdftoppm -gray -singlefile -r 600 -f " + std::to_string(page) + " " + pdf + " " +
-                  folder.file("page"));
+                  directory.file("page"));
   REQUIRE_MESSAGE(result.status == 0, "poppler-utils is needed: ", result.err);
-  return load_image(folder.file("page.pgm"));
+  return load_image(directory.file("page.pgm"));
 }
 
-GreyImage render_svg(const TemporaryDirectory& folder, const std::string& svg) {
+GreyImage render_svg(const TemporaryDirectory& directory, const std::string& svg) {
   const CommandResult result = run_command("rsvg-convert --dpi-x 600 --dpi-y 600 -b white -o " +
-                                           folder.file("svg.png") + " " + svg);
+                                           directory.file("svg.png") + " " + svg);
   REQUIRE_MESSAGE(result.status == 0, "librsvg2-bin is needed: ", result.err);
-  return load_image(folder.file("svg.png"));
+  return load_image(directory.file("svg.png"));
 }
 
 }  // namespace
 
 TEST_CASE("a marker alone measures its diameter in PDF, SVG and PNG alike") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   for (const double diameter_mm : {122.0, 25.0}) {
     CAPTURE(diameter_mm);
     const std::string options = "markers --id 7 --paper none --dpi 600 --diameter " +
                                 std::to_string(diameter_mm / 1000) + " -o ";
     for (const char* name : {"m.pdf", "m.svg", "m.png"}) {
-      REQUIRE(run_roundel(options + folder.file(name)).status == 0);
+      REQUIRE(run_roundel(options + directory.file(name)).status == 0);
     }
     const double middle = diameter_mm * kMarginRatio / 2 * kPixelsPerMm - 0.5;
     const double radius = diameter_mm / 2 * kPixelsPerMm;
     for (const GreyImage& image :
-         {render_pdf(folder, folder.file("m.pdf"), 1), render_svg(folder, folder.file("m.svg")),
-          load_image(folder.file("m.png"))}) {
+         {render_pdf(directory, directory.file("m.pdf"), 1),
+          render_svg(directory, directory.file("m.svg")), load_image(directory.file("m.png"))}) {
       CHECK(std::abs(image.width - 2 * middle - 1) <= 1);
       CHECK(image.height == image.width);
       const Disc disc = measure_disc(image, middle, middle, radius);
@@ -111,20 +111,22 @@ TEST_CASE("a marker alone measures its diameter in PDF, SVG and PNG alike") {
 }
 
 TEST_CASE("the same marker has the same pattern in PDF, SVG and PNG") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   for (const char* name : {"m.pdf", "m.svg", "m.png"}) {
     REQUIRE(run_roundel("markers --id 13 --paper none --dpi 600 --diameter 0.04 -o " +
-                        folder.file(name))
+                        directory.file(name))
                 .status == 0);
   }
-  const GreyImage png = load_image(folder.file("m.png"));
+  const GreyImage png = load_image(directory.file("m.png"));
   const double middle = 20 * kMarginRatio * kPixelsPerMm - 0.5;
-  for (const GreyImage& other :
-       {render_pdf(folder, folder.file("m.pdf"), 1), render_svg(folder, folder.file("m.svg"))}) {
+  for (const GreyImage& other : {render_pdf(directory, directory.file("m.pdf"), 1),
+                                 render_svg(directory, directory.file("m.svg"))}) {
     int compared = 0;
     int different = 0;
-    for (double r = 0.055; r < 1.2; r += 0.01) {
-      for (double angle = 0.005; angle < 2 * std::numbers::pi; angle += 0.01) {
+    for (int i = 0; i < 115; ++i) {
+      const double r = 0.055 + 0.01 * i;
+      for (int k = 0; k < 628; ++k) {
+        const double angle = 0.005 + 0.01 * k;
         const double u = middle + r * 20 * kPixelsPerMm * std::cos(angle);
         const double v = middle - r * 20 * kPixelsPerMm * std::sin(angle);
         ++compared;
@@ -136,19 +138,20 @@ TEST_CASE("the same marker has the same pattern in PDF, SVG and PNG") {
 }
 
 TEST_CASE("a sheet prints every marker at its place, size and with a ruler that is right") {
-  const TemporaryDirectory folder;
-  REQUIRE(run_roundel("markers --ids 1-15 --diameter 0.05 -o " + folder.file("s.pdf")).status == 0);
+  const TemporaryDirectory directory;
+  REQUIRE(run_roundel("markers --ids 1-15 --diameter 0.05 -o " + directory.file("s.pdf")).status ==
+          0);
   const SheetLayout layout = lay_out_sheet("A4", 50);
   REQUIRE(layout.cells() == 12);
   for (const int page : {1, 2}) {
-    const GreyImage image = render_pdf(folder, folder.file("s.pdf"), page);
+    const GreyImage image = render_pdf(directory, directory.file("s.pdf"), page);
     CHECK(std::abs(image.width - 210 * kPixelsPerMm) <= 1);
     CHECK(std::abs(image.height - 297 * kPixelsPerMm) <= 1);
     for (int cell = 0; cell < (page == 1 ? 12 : 3); ++cell) {
-      const double u =
-          (layout.left_mm + (cell % layout.columns + 0.5) * layout.cell_mm) * kPixelsPerMm - 0.5;
-      const double v =
-          (layout.top_mm + (cell / layout.columns + 0.5) * layout.cell_mm) * kPixelsPerMm - 0.5;
+      const int column = cell % layout.columns;
+      const int row = cell / layout.columns;
+      const double u = (layout.left_mm + (column + 0.5) * layout.cell_mm) * kPixelsPerMm - 0.5;
+      const double v = (layout.top_mm + (row + 0.5) * layout.cell_mm) * kPixelsPerMm - 0.5;
       const Disc disc = measure_disc(image, u, v, 25 * kPixelsPerMm);
       check_diameter(disc, 50);
       CHECK(std::abs(disc.u - u) < 1);
@@ -165,11 +168,11 @@ TEST_CASE("a sheet prints every marker at its place, size and with a ruler that 
 }
 
 TEST_CASE("a sheet names the ids, the set and the diameter to measure") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   REQUIRE(run_roundel("markers --ids 3,28 --bits 9 --hamming 2 --diameter 0.08 -o " +
-                      folder.file("s.pdf"))
+                      directory.file("s.pdf"))
               .status == 0);
-  const CommandResult text = run_command("pdftotext -layout " + folder.file("s.pdf") + " -");
+  const CommandResult text = run_command("pdftotext -layout " + directory.file("s.pdf") + " -");
   REQUIRE(text.status == 0);
   for (const char* words :
        {"id 3", "id 28", "9 bits, d 2", "80.0 mm", "170 mm", "measure the black disc: 80.0 mm"}) {
@@ -179,9 +182,9 @@ TEST_CASE("a sheet names the ids, the set and the diameter to measure") {
 }
 
 TEST_CASE("a printed PNG carries its resolution") {
-  const TemporaryDirectory folder;
-  REQUIRE(run_roundel("markers --plain --dpi 300 -o " + folder.file("m.png")).status == 0);
-  const std::string bytes = read_file(folder.file("m.png"));
+  const TemporaryDirectory directory;
+  REQUIRE(run_roundel("markers --plain --dpi 300 -o " + directory.file("m.png")).status == 0);
+  const std::string bytes = read_file(directory.file("m.png"));
   const std::size_t chunk = bytes.find("pHYs");
   REQUIRE(chunk != std::string::npos);
   // 300 dpi are 11811 pixels a metre, 0x2e23, both ways.

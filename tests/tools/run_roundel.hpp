@@ -20,12 +20,12 @@ struct CommandResult {
 
 // Runs a shell command, its standard input empty unless it says otherwise.
 inline CommandResult run_command(const std::string& command) {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const std::string line =
-      "{ " + command + "; } </dev/null >" + folder.file("out") + " 2>" + folder.file("err");
+      "{ " + command + "; } </dev/null >" + directory.file("out") + " 2>" + directory.file("err");
   const int status = std::system(line.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder.file("out")),
-          read_file(folder.file("err"))};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(directory.file("out")),
+          read_file(directory.file("err"))};
 }
 
 // Runs the real program.

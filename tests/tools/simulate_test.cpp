@@ -19,15 +19,15 @@ const std::string kSmall = "simulate --width 640 --height 360 --robots 3 --diame
 }  // namespace
 
 TEST_CASE("simulate writes video, camera and truth that belong together") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const CommandResult result = run_roundel(
-      kSmall + "--frames 5 --rate 12.5 --coded-corners --camera-out " + folder.file("c.yaml") +
-      " --truth " + folder.file("t.jsonl") + " -o " + folder.file("v.y4m"));
+      kSmall + "--frames 5 --rate 12.5 --coded-corners --camera-out " + directory.file("c.yaml") +
+      " --truth " + directory.file("t.jsonl") + " -o " + directory.file("v.y4m"));
   CAPTURE(result.err);
   REQUIRE(result.status == 0);
   CHECK(result.out == "");
 
-  Y4mReader video(folder.file("v.y4m"));
+  Y4mReader video(directory.file("v.y4m"));
   CHECK(video.format().width == 640);
   CHECK(video.format().height == 360);
   CHECK(video.format().frames_per_second() == 12.5);
@@ -36,10 +36,10 @@ TEST_CASE("simulate writes video, camera and truth that belong together") {
   }
   CHECK(video.frames_read() == 5);
 
-  const CameraModel camera = read_camera_file(folder.file("c.yaml")).camera;
+  const CameraModel camera = read_camera_file(directory.file("c.yaml")).camera;
   CHECK(camera.width == 640);
 
-  const auto truth = json_lines(read_file(folder.file("t.jsonl")));
+  const auto truth = json_lines(read_file(directory.file("t.jsonl")));
   REQUIRE(truth.size() == 5);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     CHECK(truth[i]["frame"] == i);
@@ -64,20 +64,20 @@ TEST_CASE("simulate writes video, camera and truth that belong together") {
 }
 
 TEST_CASE("standard output, a file and PNG pictures hold the same frames") {
-  const TemporaryDirectory folder;
+  const TemporaryDirectory directory;
   const std::string options = kSmall + "--frames 3 --seed 9 -o ";
-  REQUIRE(run_roundel(options + folder.file("v.y4m")).status == 0);
-  REQUIRE(run_roundel(options + folder.file("png")).status == 0);
-  const bool same = run_roundel(options + "-").out == read_file(folder.file("v.y4m"));
+  REQUIRE(run_roundel(options + directory.file("v.y4m")).status == 0);
+  REQUIRE(run_roundel(options + directory.file("png")).status == 0);
+  const bool same = run_roundel(options + "-").out == read_file(directory.file("v.y4m"));
   CHECK(same);
-  Y4mReader video(folder.file("v.y4m"));
+  Y4mReader video(directory.file("v.y4m"));
   GreyImage frame;
   for (int i = 0; video.next(frame); ++i) {
     const GreyImage picture =
-        load_image(folder.file("png/frame_00000" + std::to_string(i) + ".png"));
+        load_image(directory.file("png/frame_00000" + std::to_string(i) + ".png"));
     CHECK(picture.pixels == frame.pixels);
   }
-  CHECK_FALSE(std::filesystem::exists(folder.file("png/frame_000003.png")));
+  CHECK_FALSE(std::filesystem::exists(directory.file("png/frame_000003.png")));
 }
 
 TEST_CASE("another seed, noise, blur, light or response is another picture") {
@@ -100,11 +100,11 @@ TEST_CASE("another seed, noise, blur, light or response is another picture") {
 }
 
 TEST_CASE("the ids given are those that the robots wear") {
-  const TemporaryDirectory folder;
-  REQUIRE(run_roundel(kSmall + "--ids 9,30,9 --frames 1 --no-corners --truth " + folder.file("t") +
-                      " -o " + folder.file("d"))
+  const TemporaryDirectory directory;
+  REQUIRE(run_roundel(kSmall + "--ids 9,30,9 --frames 1 --no-corners --truth " +
+                      directory.file("t") + " -o " + directory.file("d"))
               .status == 0);
-  const auto truth = json_lines(read_file(folder.file("t")));
+  const auto truth = json_lines(read_file(directory.file("t")));
   REQUIRE(truth.size() == 1);
   const auto& markers = truth[0]["markers"];
   REQUIRE(markers.size() == 3);

@@ -1,0 +1,261 @@
+#include <doctest/doctest.h>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/lens_patch.hpp"
+#include "core/necklace.hpp"
+#include "core/photometric_fit.hpp"
+#include "core/photometric_kernel.hpp"
+#include "core/plane_projection.hpp"
+#include "tests/painter.hpp"
+
+using namespace roundel;  // NOLINT(google-build-using-namespace)
+using roundel::test::Painter;
+using roundel::test::Random;
+
+namespace {
+
+CameraModel small_camera() {
+  CameraModel camera;
+  camera.width = 200;
+  camera.height = 160;
+  camera.fx = 700;
+  camera.fy = 702;
+  camera.cx = 60;
+  camera.cy = 101;
+  camera.distortion = {-0.28, 0.09, 0.0006, -0.0009, -0.012};
+  return camera;
+}
+
+Pose tilted(double tilt, double direction, double yaw, double z) {
+  const Eigen::Vector3d centre(0.05 * z, -0.03 * z, z);
+  const Eigen::Vector3d ray = -centre.normalized();
+  const Eigen::Vector3d axis = Eigen::AngleAxisd(direction, ray) * ray.unitOrthogonal();
+  return pose_from_circle({centre, Eigen::AngleAxisd(tilt, axis) * ray}, yaw);
+}
+
+// The outline that a moment ellipse would give, good to a pixel or so.
+Ellipse rough_ellipse(const CameraModel& camera, const Pose& pose, double radius) {
+  const Eigen::Vector2d centre = *camera.project(pose.position);
+  double a = 0, b = 1e9, angle = 0;
+  for (int i = 0; i < 64; ++i) {
+    const double t = i * std::numbers::pi / 32;
+    const Eigen::Vector2d arm =
+        *camera.project(pose.to_camera({radius * std::cos(t), radius * std::sin(t), 0})) - centre;
+    if (arm.norm() > a) {
+      a = arm.norm();
+      angle = std::atan2(arm.y(), arm.x());
+    }
+    b = std::min(b, arm.norm());
+  }
+  return {centre.x(), centre.y(), a, b, angle};
+}
+
+Pose disturbed(const Pose& pose, Random& random) {
+  Pose start = pose;
+  const double z = pose.position.z();
+  start.position += Eigen::Vector3d(random.gaussian() * 2e-4, random.gaussian() * 2e-4,
+                                    random.gaussian() * 3e-3) *
+                    z;
+  const Eigen::Vector3d turn(random.gaussian(), random.gaussian(), random.gaussian());
+  start.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * turn.norm(), turn.normalized())) *
+                      pose.orientation;
+  return start;
+}
+
+constexpr double kRadius = kDefaultDiameter / 2;
+
+Pattern code_pattern(int id) {
+  return {Pattern::Kind::kCode, 8, *NecklaceCode(8, 1).word(id), 0};
+}
+
+}  // namespace
+
+TEST_CASE("within a marker the lens patch is as good as the exact inverse of the lens") {
+  const CameraModel camera = small_camera();
+  const Eigen::Vector2d middle(140, 40);
+  const auto patch = LensPatch::make(camera, middle, 60);
+  REQUIRE(patch.has_value());
+  for (int dv = -40; dv <= 40; dv += 8) {
+    for (int du = -40; du <= 40; du += 8) {
+      const Eigen::Vector2d exact = *camera.normalise(middle + Eigen::Vector2d(du, dv));
+      CHECK((patch->normalise(du, dv) - exact).norm() * camera.fx < 3e-3);
+    }
+  }
+}
+
+TEST_CASE("from a disturbed start the fit comes back to the painted pose") {
+  const CameraModel camera = small_camera();
+  Random random(31);
+  PhotometricFit fit;
+  for (int i = 0; i < 40; ++i) {
+    CAPTURE(i);
+    const Pose truth = tilted(random.uniform(0.15, 1.2), random.uniform(0, 6),
+                              random.uniform(-3, 3), random.uniform(1.0, 2.2));
+    const int id = random.integer(1, 30);
+    Painter painter(camera, {});
+    painter.add({8, *NecklaceCode(8, 1).word(id)}, truth);
+    REQUIRE(fit.load(painter.view(), camera, rough_ellipse(camera, truth, kRadius), {35, 215},
+                     kRadius));
+    const auto found = fit.fit(disturbed(truth, random), code_pattern(id), {}, 10);
+    REQUIRE(found.has_value());
+    // Sharp edges: what is left is the rounding of the grey levels and the painter's point samples.
+    CHECK((found->pose.position - truth.position).norm() / truth.position.z() < 1.5e-3);
+    CHECK(orientation_error(found->pose.orientation, truth.orientation) < 4e-3);
+    CHECK(found->levels.dark == doctest::Approx(35).epsilon(0.03));
+    CHECK(found->levels.bright == doctest::Approx(215).epsilon(0.01));
+  }
+}
+
+TEST_CASE("glare on a part of the marker moves the pose little") {
+  const CameraModel camera = small_camera();
+  const Pose truth = tilted(0.5, 1, 0.7, 1.2);
+  Painter painter(camera, {});
+  painter.add({8, *NecklaceCode(8, 1).word(9)}, truth);
+  painter.blur(1);
+  const Ellipse ellipse = rough_ellipse(camera, truth, kRadius);
+  GreyImage& image = painter.image();
+  for (int v = 0; v < image.height; ++v) {
+    for (int u = 0; u < image.width; ++u) {
+      if (std::hypot(u - ellipse.u - 0.9 * ellipse.a, v - ellipse.v) < 0.25 * ellipse.a) {
+        image.pixels[static_cast<std::size_t>(v * image.width + u)] = 255;
+      }
+    }
+  }
+  PhotometricFit fit;
+  REQUIRE(fit.load(painter.view(), camera, ellipse, {35, 215}, kRadius));
+  Random random(32);
+  const auto found = fit.fit(disturbed(truth, random), code_pattern(9), {}, 12);
+  REQUIRE(found.has_value());
+  CHECK((found->pose.position - truth.position).norm() < 0.01);
+  CHECK(orientation_error(found->pose.orientation, truth.orientation) < 0.02);
+}
+
+TEST_CASE("the stated covariance is that of the errors over many noisy pictures") {
+  const CameraModel camera = small_camera();
+  Random random(33);
+  PhotometricFit fit;
+  double squares = 0;
+  constexpr int kPictures = 120;
+  for (int i = 0; i < kPictures; ++i) {
+    const Pose truth = tilted(random.uniform(0.3, 0.9), random.uniform(0, 6), random.uniform(-3, 3),
+                              random.uniform(1.2, 1.8));
+    Painter painter(camera, {});
+    painter.add({8, *NecklaceCode(8, 1).word(4)}, truth);
+    painter.blur(1);
+    painter.add_noise(5, static_cast<std::uint64_t>(100 + i));
+    REQUIRE(fit.load(painter.view(), camera, rough_ellipse(camera, truth, kRadius), {35, 215},
+                     kRadius));
+    const auto found = fit.fit(disturbed(truth, random), code_pattern(4), {}, 8);
+    REQUIRE(found.has_value());
+    const Eigen::AngleAxisd turn(truth.orientation * found->pose.orientation.conjugate());
+    const double angle = std::remainder(turn.angle(), 2 * std::numbers::pi);
+    Eigen::Matrix<double, 6, 1> error;
+    error << truth.position - found->pose.position, angle * turn.axis();
+    squares += error.dot(found->covariance.ldlt().solve(error));
+  }
+  // Six degrees of freedom; the deviation of the mean over so many pictures is 5 %.
+  CHECK(squares / kPictures / 6 == doctest::Approx(1).epsilon(0.3));
+}
+
+namespace {
+
+// A model and pixels as the fit would make them, for tests of the kernel alone.
+struct KernelCase {
+  PhotometricModel model{};
+  std::vector<float> x, y, grey, weight;
+  PixelColumns columns() const {
+    return {x.data(), y.data(), grey.data(), weight.data(), static_cast<int>(x.size())};
+  }
+};
+
+KernelCase kernel_case(int halves, double low, double high) {
+  KernelCase c;
+  // A plane one unit of depth away, tilted a little: w = H^-1 n.
+  c.model.at = {0.02F, -0.01F, 1.0F};
+  c.model.by_x = {40.0F, 3.0F, 0.15F};
+  c.model.by_y = {-2.0F, 38.0F, -0.1F};
+  c.model.pixel_slope = {1.0F / 800, 0.00002F, -0.00001F, 1.0F / 810};
+  c.model.eye = {0.5F, -0.3F, 40.0F};
+  c.model.dark = 30;
+  c.model.contrast = 170;
+  c.model.slope_x = 0.05F;
+  c.model.slope_y = -0.03F;
+  c.model.blur = 0.85F;
+  c.model.shift = 0.1F;
+  c.model.inner = halves > 0 ? static_cast<float>(kCodeInnerRatio) : 0.45F;
+  c.model.halves = halves;
+  for (int k = 0; k < halves; ++k) {
+    c.model.colours[static_cast<std::size_t>(k)] = (k * k / 3) % 2 ? 1.0F : 0.0F;
+  }
+  c.model.robust_scale = c.model.outlier = 1e9F;
+  Random random(34);
+  while (c.x.size() < 400) {
+    const double radius = random.uniform(low, high), angle = random.uniform(0, 6.28);
+    c.x.push_back(static_cast<float>(radius * std::cos(angle) / 40));
+    c.y.push_back(static_cast<float>(radius * std::sin(angle) / 38));
+    c.grey.push_back(static_cast<float>(random.uniform(30, 200)));
+    c.weight.push_back(1);
+  }
+  return c;
+}
+
+using AddPixels = void (*)(const PhotometricModel&, const PixelColumns&, PhotometricSums&,
+                           VectorUnit);
+
+// Right side of the normal equations per unknown by finite differences of the squared residuals.
+void check_derivatives(KernelCase c, AddPixels add_pixels) {
+  PhotometricSums sums;
+  add_pixels(c.model, c.columns(), sums, VectorUnit::kBest);
+  const auto squares_with = [&](float PhotometricModel::*member, double step, bool logarithm) {
+    PhotometricModel m = c.model;
+    m.*member = static_cast<float>(logarithm ? (m.*member) * std::exp(step) : (m.*member) + step);
+    PhotometricSums s;
+    add_pixels(m, c.columns(), s, VectorUnit::kBest);
+    return static_cast<double>(s.squares);
+  };
+  struct Case {
+    int unknown;
+    float PhotometricModel::*member;
+    double step;
+    bool logarithm = false;
+  };
+  for (const Case& t : {Case{kDark, &PhotometricModel::dark, 0.5},
+                        Case{kContrast, &PhotometricModel::contrast, 0.5},
+                        Case{kSlopeX, &PhotometricModel::slope_x, 0.01},
+                        Case{kSlopeY, &PhotometricModel::slope_y, 0.01},
+                        Case{kShift, &PhotometricModel::shift, 0.02},
+                        Case{kBlur, &PhotometricModel::blur, 0.02, true}}) {
+    CAPTURE(t.unknown);
+    const double slope = (squares_with(t.member, t.step, t.logarithm) -
+                          squares_with(t.member, -t.step, t.logarithm)) /
+                         (2 * t.step);
+    const double expected = -2.0 * sums.right_side[static_cast<std::size_t>(t.unknown)];
+    CHECK(slope == doctest::Approx(expected).epsilon(0.03));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the kernel's derivatives agree with finite differences") {
+  check_derivatives(kernel_case(16, 0.85, 1.15), add_outer_pixels);
+  check_derivatives(kernel_case(16, 0.2, 0.75), add_inner_pixels);
+  check_derivatives(kernel_case(0, 0.3, 0.6), add_inner_pixels);
+}
+
+TEST_CASE("vector units give the same sums to the bit") {
+  for (const bool inner : {false, true}) {
+    const KernelCase c = kernel_case(16, inner ? 0.2 : 0.85, inner ? 0.75 : 1.15);
+    PhotometricSums best, baseline;
+    const AddPixels add = inner ? add_inner_pixels : add_outer_pixels;
+    add(c.model, c.columns(), best, VectorUnit::kBest);
+    add(c.model, c.columns(), baseline, VectorUnit::kBaseline);
+    CHECK(best.squares == baseline.squares);
+    CHECK(best.normal_matrix == baseline.normal_matrix);
+    CHECK(best.right_side == baseline.right_side);
+  }
+}
