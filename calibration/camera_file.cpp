@@ -21,8 +21,8 @@ constexpr std::size_t kMaxNameLength = 200;
 // One file being read: where errors are, and the look-up of keys under their known spellings.
 class Reader {
  public:
-  Reader(YAML::Node document, const std::string& file_name)
-      : document_(std::move(document)), file_name_(file_name) {
+  Reader(const YAML::Node& document, const std::string& file_name)
+      : document_(document), file_name_(file_name) {
     if (!document_.IsMap()) {
       fail(document_, "",
            "is not a camera file; expected image_width, image_height, "

@@ -11,11 +11,15 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
   // pseudo-inverse.
   constexpr int kSide = 5;
   constexpr int kPoints = kSide * kSide;
+  const auto grid = [](int i) {
+    const int column = i % kSide, row = i / kSide;
+    return Eigen::Vector2d(column / 2.0 - 1, row / 2.0 - 1);
+  };
   using Design = Eigen::Matrix<double, kPoints, kTerms>;
-  static const Eigen::Matrix<double, kTerms, kPoints> kSolver = [] {
+  static const Eigen::Matrix<double, kTerms, kPoints> solver = [&grid] {
     Design design;
     for (int i = 0; i < kPoints; ++i) {
-      const double x = (i % kSide) / 2.0 - 1, y = (i / kSide) / 2.0 - 1;
+      const double x = grid(i).x(), y = grid(i).y();
       design.row(i) << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
     }
     const Eigen::Matrix<double, kTerms, kTerms> normal_matrix = design.transpose() * design;
@@ -27,12 +31,11 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
   patch.scale_ = 1 / std::max(reach, 1.0);
   Eigen::Matrix<double, 2, kPoints> points;
   for (int i = 0; i < kPoints; ++i) {
-    const Eigen::Vector2d offset((i % kSide) / 2.0 - 1, (i / kSide) / 2.0 - 1);
-    const auto point = camera.normalise(middle + offset / patch.scale_);
+    const auto point = camera.normalise(middle + grid(i) / patch.scale_);
     if (!point) return std::nullopt;
     points.col(i) = *point;
   }
-  patch.coefficients_.noalias() = points * kSolver.transpose();
+  patch.coefficients_.noalias() = points * solver.transpose();
   return patch;
 }
 

@@ -18,6 +18,10 @@ namespace {
 constexpr double kOutlineNoise = 0.30;
 constexpr double kToothEdgeNoise = 0.15;
 
+// Residuals of a fitted marker stay below this share of its contrast, noise of a tenth included;
+// what has more is something else.
+constexpr double kMaxResidual = 0.12;
+
 // A hypothesis behind by so much in its log-likelihood before it is refined stays behind.
 constexpr double kDecided = 60;
 
@@ -92,6 +96,18 @@ struct Observer::Candidate {
   std::optional<CodeReading> reading;
   Pattern pattern;
   PoseHypothesis hypothesis;
+  std::optional<PhotometricPose> fitted;
+
+  // Whether the fit, as far as there is one, found what a marker looks like.
+  bool explained(double contrast) const {
+    if (!fitted) return true;
+    if (pattern.kind == Pattern::Kind::kPlain &&
+        (fitted->inner_ratio < kPlainInnerRatioMin - 0.04 ||
+         fitted->inner_ratio > kPlainInnerRatioMax + 0.04)) {
+      return false;
+    }
+    return fitted->mean_square < kMaxResidual * kMaxResidual * contrast * contrast;
+  }
 };
 
 void Observer::observe_with_camera(const LumaView& frame, Observation& observation) {
@@ -126,7 +142,8 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
           reading ? -0.5 * reading->edge_scatter / (kToothEdgeNoise * kToothEdgeNoise) +
                         std::log(std::max(reading->probability, 1e-9))
                   : kNothingRead;
-      if (reading && reading->id > 0) {
+      // Teeth that are more likely not the word's would only mislead the fit.
+      if (reading && reading->probability > 0.5) {
         yaw = reading->yaw;
         candidate.pattern.kind = Pattern::Kind::kCode;
         candidate.pattern.bits = parameters_.bits;
@@ -150,6 +167,10 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
     observation.id = candidates[best].reading->id;
     observation.id_probability = candidates[best].reading->probability;
   }
+  // A code that can be read is proof enough, whatever light or glare do to the residuals.
+  const bool read = observation.id_probability >= parameters_.min_id_probability;
+  observation.plausible = read || ((observation.coded || may_be_plain_centre(segment)) &&
+                                   candidates[best].explained(segment.levels.contrast()));
 }
 
 // Fits the candidates' poses to the grey values. Where both can be fitted the same way, how well
@@ -159,19 +180,19 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   constexpr int kMaxSteps = 6;
   const double radius_m = parameters_.diameter_m / 2;
   const bool loaded = fit_.load(frame, *camera_, segment.ellipse, segment.levels, radius_m);
-  std::array<std::optional<PhotometricPose>, 2> fits;
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
+    auto& fitted = candidate.fitted;
     PoseHypothesis& hypothesis = candidate.hypothesis;
     EdgeLook look;
     // Beside an unknown inner ratio, a shift of all edges looks like another distance.
     if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
     const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
     if (loaded && lead < kDecided)
-      fits[i] = fit_.fit(hypothesis.pose, candidate.pattern, look, kMaxSteps);
-    if (fits[i]) {
-      hypothesis.pose = fits[i]->pose;
-      hypothesis.covariance = fits[i]->covariance;
+      fitted = fit_.fit(hypothesis.pose, candidate.pattern, look, kMaxSteps);
+    if (fitted) {
+      hypothesis.pose = fitted->pose;
+      hypothesis.covariance = fitted->covariance;
       if (candidate.pattern.kind != Pattern::Kind::kCode) {
         hypothesis.pose = pose_from_circle({hypothesis.pose.position, hypothesis.pose.normal()}, 0);
       }
@@ -182,13 +203,14 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
       hypothesis.covariance = pose_covariance(hypothesis.pose, radius_m, *camera_, noise);
     }
   }
-  if (!fits[0] || !fits[1] || candidates[0].pattern.kind != candidates[1].pattern.kind) return;
+  const auto &first = candidates[0].fitted, &second = candidates[1].fitted;
+  if (!first || !second || candidates[0].pattern.kind != candidates[1].pattern.kind) return;
   // Grey levels that even a perfect model would leave: what print and light do is not all known.
   const double floor = kModelError * segment.levels.contrast();
-  const double variance = std::min(fits[0]->mean_square, fits[1]->mean_square) + floor * floor;
-  for (std::size_t i = 0; i < 2; ++i) {
-    candidates[i].hypothesis.log_likelihood =
-        -0.5 * fits[i]->mean_square * fits[i]->pixels / variance;
+  const double variance = std::min(first->mean_square, second->mean_square) + floor * floor;
+  for (Candidate& candidate : candidates) {
+    candidate.hypothesis.log_likelihood =
+        -0.5 * candidate.fitted->mean_square * candidate.fitted->pixels / variance;
   }
 }
 
@@ -197,17 +219,19 @@ Observation Observer::observe(const LumaView& frame, const Segment& segment) {
   observation.segment = segment;
   if (camera_) {
     observe_with_camera(frame, observation);
-  } else if (reader_) {
+  } else if (!reader_) {
+    observation.plausible = may_be_plain_centre(segment);
+  } else {
     // Without a camera the ring is taken for concentric with the outline: good enough for the id.
     const auto reading = reader_->read(frame, PlaneProjection(segment.ellipse),
                                        mean_radius(segment.ellipse), segment.levels);
     observation.coded = reading.has_value();
+    observation.plausible = observation.coded || may_be_plain_centre(segment);
     if (reading && reading->id > 0) {
       observation.id = reading->id;
       observation.id_probability = reading->probability;
     }
   }
-  observation.plausible = observation.coded || may_be_plain_centre(segment);
   return observation;
 }
 

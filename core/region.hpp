@@ -57,7 +57,7 @@ class RegionFiller {
  private:
   struct StoredRun {
     Run run;
-    std::int32_t next_in_row;  // index of another run of the same row, -1 at the end
+    std::int32_t next_in_row = -1;  // index of another run of the same row, -1 at the end
   };
   struct RowHead {
     std::uint32_t stamp = 0;  // the fill that wrote `first`; older ones are void

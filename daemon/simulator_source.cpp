@@ -10,8 +10,8 @@
 namespace roundel {
 
 SimulatorSource::SimulatorSource(const ArenaOptions& options) : arena_(options) {
-  start_ns_ = monotonic_ns();
-  timer_.arm(due_ns(0));
+  arena_.render(0, image_);  // the first picture takes longer; nobody waits for it yet
+  timer_.arm(monotonic_ns());
 }
 
 std::int64_t SimulatorSource::due_ns(std::int64_t frame) const {
@@ -21,6 +21,7 @@ std::int64_t SimulatorSource::due_ns(std::int64_t frame) const {
 
 std::optional<FrameLease> SimulatorSource::next() {
   if (!timer_.take()) return std::nullopt;
+  if (last_frame_ < 0) start_ns_ = monotonic_ns();
   const double elapsed_s = static_cast<double>(monotonic_ns() - start_ns_) / 1e9;
   const auto newest = static_cast<std::int64_t>(elapsed_s * arena_.options().frame_rate);
   const std::int64_t number = std::max(newest, last_frame_ + 1);

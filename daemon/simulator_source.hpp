@@ -10,8 +10,8 @@
 
 namespace roundel {
 
-// Frames of a rendered arena in real time. Frame n is due n periods after the start; if rendering
-// and tracking take longer than a period, frames are left out, as with a camera.
+// Frames of a rendered arena in real time. Frame n is due n periods after the first was taken; if
+// rendering and tracking take longer than a period, frames are left out, as with a camera.
 class SimulatorSource final : public FrameSource {
  public:
   // Throws std::invalid_argument for options that can't be met.

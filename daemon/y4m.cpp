@@ -192,7 +192,7 @@ bool Y4mReader::next(GreyImage& frame) {
   if (std::fread(frame.pixels.data(), 1, frame.pixels.size(), stream_) != frame.pixels.size()) {
     fail("is truncated");
   }
-  std::array<std::uint8_t, 16384> skipped;
+  std::array<std::uint8_t, 16384> skipped = {};
   for (std::size_t left = format_.chroma_bytes; left > 0;) {
     const std::size_t part = std::min(left, skipped.size());
     if (std::fread(skipped.data(), 1, part, stream_) != part) {

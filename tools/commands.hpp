@@ -15,6 +15,7 @@ struct UsageError : std::runtime_error {
 void add_detect(CLI::App& app);
 void add_track(CLI::App& app);
 void add_simulate(CLI::App& app);
+void add_compare(CLI::App& app);
 void add_markers(CLI::App& app);
 void add_listen(CLI::App& app);
 

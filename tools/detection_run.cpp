@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -16,6 +13,7 @@
 #include "tools/frame_input.hpp"
 #include "tools/frame_text.hpp"
 #include "tools/json_frame.hpp"
+#include "tools/standard_output.hpp"
 
 namespace roundel {
 namespace {
@@ -97,13 +95,6 @@ FindMarkers checked_finder(const MakeFinder& make_finder, const DetectionOptions
   }
 }
 
-void print(const std::string& line) {
-  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size() || std::fflush(stdout) != 0) {
-    throw std::runtime_error(
-        fmt::format("standard output can't be written: {}", std::strerror(errno)));
-  }
-}
-
 }  // namespace
 
 void run_detection(const DetectionOptions& options, FrameSizes sizes,
@@ -113,13 +104,19 @@ void run_detection(const DetectionOptions& options, FrameSizes sizes,
   }
   FrameInput input(options.files);
   const AnnotatedPath annotated(options.annotate, input);
+  checked_finder(make_finder, options, std::nullopt);  // parameters out of range: before waiting
+
+  GreyImage frame;
+  bool more = input.next(frame);
+  // After the first frame: in a pipe, the program that makes the frames may make the camera file
+  // too.
   std::optional<CameraModel> camera;
   if (!options.camera_file.empty()) {
     camera = read_camera_file(options.camera_file).camera;
   }
   const FindMarkers find = checked_finder(make_finder, options, camera);
   SizeCheck size_check(sizes, camera, options.camera_file);
-  for (GreyImage frame; input.next(frame);) {
+  for (; more; more = input.next(frame)) {
     size_check.check(frame, input);
     const auto start = std::chrono::steady_clock::now();
     const std::span<const Marker> markers = find(frame.view());

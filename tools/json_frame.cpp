@@ -1,8 +1,45 @@
 #include "tools/json_frame.hpp"
 
+#include <fmt/format.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "tools/json_fields.hpp"
+
 namespace roundel {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr auto kLargest = std::numeric_limits<std::int64_t>::max();
+
+Marker marker_from_json(const Json& json) {
+  Marker marker;
+  marker.id = static_cast<std::int32_t>(
+      integer_field(json, "id", -1, std::numeric_limits<std::int32_t>::max()));
+  marker.u = number_field(json, "u");
+  marker.v = number_field(json, "v");
+  if (has_field(json, "id_probability")) {
+    marker.id_probability = number_field(json, "id_probability");
+  }
+  if (has_field(json, "track")) {
+    marker.track = integer_field(json, "track", 0, kLargest);
+  }
+  marker.has_pose = has_field(json, "position") || has_field(json, "orientation");
+  if (marker.has_pose) {
+    marker.pose = {vector_field(json, "position"), quaternion_field(json, "orientation")};
+  }
+  if (has_field(json, "sigma")) {
+    const Json& sigma = field(json, "sigma");
+    marker.sigma_position = vector_field(sigma, "position");
+    marker.sigma_rotation = vector_field(sigma, "rotation");
+  }
+  return marker;
+}
+
+}  // namespace
 
 Json vector_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -47,6 +84,21 @@ Json frame_json(const FrameInfo& info, std::span<const Marker> markers) {
           {"utime", info.utime},
           {"elapsed_us", info.elapsed_us},
           {"markers", std::move(list)}};
+}
+
+ReportedFrame frame_from_json(const Json& json) {
+  ReportedFrame frame;
+  frame.frame = integer_field(json, "frame", 0, kLargest);
+  const Json& list = array_field(json, "markers");
+  frame.markers.reserve(list.size());
+  for (const Json& marker : list) {
+    try {
+      frame.markers.push_back(marker_from_json(marker));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(fmt::format("markers[{}]: {}", frame.markers.size(), error.what()));
+    }
+  }
+  return frame;
 }
 
 std::string json_line(const Json& json) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/marker.hpp"
 
@@ -25,6 +26,17 @@ nlohmann::ordered_json quaternion_json(const Eigen::Quaterniond& q);  // [w, x, 
 nlohmann::ordered_json marker_json(const Marker& marker);
 
 nlohmann::ordered_json frame_json(const FrameInfo& info, std::span<const Marker> markers);
+
+// What a program that reads the JSON of a frame gets out of it.
+struct ReportedFrame {
+  std::int64_t frame = 0;
+  std::vector<Marker> markers;
+};
+
+// The inverse of frame_json() and of what other programs write in its form; of a marker, the pose
+// (position with orientation), sigma, id_probability and track may be left out, ellipse and
+// ambiguity are not read. Throws std::runtime_error that names the field that is missing or wrong.
+ReportedFrame frame_from_json(const nlohmann::ordered_json& json);
 
 // The object in one line with its end. Bytes that are no UTF-8 (file names) are replaced.
 std::string json_line(const nlohmann::ordered_json& json);

@@ -11,4 +11,8 @@ namespace roundel {
 // finding it.
 nlohmann::ordered_json truth_json(const FrameTruth& truth);
 
+// Reads it back, but for the arena coordinates. Throws std::runtime_error that names the field that
+// is missing or wrong.
+FrameTruth truth_from_json(const nlohmann::ordered_json& json);
+
 }  // namespace roundel

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <string>
 #include <vector>
@@ -40,14 +41,13 @@ int fail(const CLI::App& app, std::string message, ExitStatus status) {
   return status;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("Motion capture of circular markers with one camera.", "roundel");
   app.require_subcommand(1);
   roundel::add_detect(app);
   roundel::add_track(app);
   roundel::add_simulate(app);
+  roundel::add_compare(app);
   roundel::add_markers(app);
   roundel::add_listen(app);
   try {
@@ -63,4 +63,15 @@ int main(int argc, char** argv) {
     return fail(app, error.what(), kBadData);
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (...) {  // not even the error could be told: out of memory
+    std::fputs("roundel: out of memory\n", stderr);
+    return kBadData;
+  }
 }

@@ -68,8 +68,10 @@ class LineWriter {
     }
   }
 
+  // The line is in the file when this returns.
   void write(const std::string& line) {
-    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size()) {
+    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size() ||
+        std::fflush(file_.get()) != 0) {
       fail();
     }
   }
@@ -107,14 +109,15 @@ void simulate(const SimulateOptions& options) {
   if (!options.truth_file.empty()) {
     truth.emplace(options.truth_file);
   }
+  // What a reader in a pipe looks up is there before the frame that makes it look: camera, truth.
   FrameOutput output(options.output, camera.width, camera.height, arena.options().frame_rate);
   GreyImage frame;
   for (std::int64_t i = 0; i < options.frames; ++i) {
     arena.render(i, frame);
-    output.write(frame.view());
     if (truth) {
       truth->write(json_line(truth_json(arena.truth(i))));
     }
+    output.write(frame.view());
   }
   output.close();
   if (truth) {

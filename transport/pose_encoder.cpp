@@ -51,7 +51,7 @@ const char* PoseEncoder::channel(const Marker& marker) {
 }
 
 Bytes PoseEncoder::encode(const FrameInformation& information, const Marker& marker) {
-  pose_t message;
+  pose_t message{};
   message.header = to_message(information);
   message.marker = to_message(marker);
   const int size = message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));

@@ -25,7 +25,8 @@ GreyImage test_picture(int width, int height) {
   image.resize(width, height);
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
-      image.pixels[static_cast<std::size_t>(v * width + u)] =
+      image.pixels[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(u)] =
           static_cast<std::uint8_t>((u * 7 + v * 3 + (u > width / 2 ? 100 : 0)) % 256);
     }
   }
@@ -34,7 +35,7 @@ GreyImage test_picture(int width, int height) {
 
 std::string png_file(const TemporaryDirectory& directory, int width, int height, png_uint_32 format,
                      const Bytes& pixels) {
-  const std::string path = directory.file("picture.png");
+  std::string path = directory.file("picture.png");
   png_image png = {};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(width);
@@ -47,7 +48,7 @@ std::string png_file(const TemporaryDirectory& directory, int width, int height,
 // With libpng's full interface, for what the simple one does not write.
 std::string png_file(const TemporaryDirectory& directory, const GreyImage& image, int depth,
                      int interlace) {
-  const std::string path = directory.file("full.png");
+  std::string path = directory.file("full.png");
   std::FILE* file = std::fopen(path.c_str(), "wb");
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
@@ -57,7 +58,9 @@ std::string png_file(const TemporaryDirectory& directory, const GreyImage& image
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   std::vector<Bytes> rows;
+  rows.reserve(static_cast<std::size_t>(image.height));
   std::vector<png_bytep> row_pointers;
+  row_pointers.reserve(rows.capacity());
   for (int v = 0; v < image.height; ++v) {
     Bytes row;
     for (int u = 0; u < image.width; ++u) {

@@ -6,7 +6,7 @@
 
 #include "tests/child_process.hpp"
 #include "tests/private_network.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/temporary_directory.hpp"
 #include "transport/subscriber.hpp"
 
 using namespace roundel;
@@ -47,7 +47,7 @@ const ReceivedFrame* wait_for_frame(Subscriber& subscriber, Wanted&& wanted) {
 TEST_CASE("roundeld sends the poses of a simulated arena and ends at SIGTERM with 0") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7701;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", small_arena(kPort, 3))));
 
@@ -92,7 +92,7 @@ TEST_CASE("roundeld sends the poses of a simulated arena and ends at SIGTERM wit
 TEST_CASE("roundeld sends frames also when nothing is seen") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7702;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", small_arena(kPort, 0))));
   for (int i = 0; i < 3; ++i) {
@@ -107,7 +107,7 @@ TEST_CASE("roundeld sends frames also when nothing is seen") {
 TEST_CASE("a wrong configuration at SIGHUP changes nothing, a right one takes effect") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7703;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
   const std::string path = folder.write("roundel.yaml", small_arena(kPort, 1));
   ChildProcess daemon(command(path));
@@ -164,7 +164,7 @@ TEST_CASE("roundeld started before the network waits for it") {
 TEST_CASE("a recording is sent frame by frame to its end") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7704;
-  const TemporaryFolder folder;
+  const TemporaryDirectory folder;
   std::string video = "YUV4MPEG2 W32 H32 F30:1 Cmono\n";
   for (int i = 0; i < 20; ++i) video += "FRAME\n" + std::string(32 * 32, 'x');
   const std::string path = folder.write("a.y4m", video);

@@ -78,12 +78,15 @@ TEST_CASE("the luma is taken and the chroma skipped in every colour space of 8 b
   const std::vector<std::pair<std::string, std::size_t>> spaces = {
       {"", 12},      {" C420", 12}, {" C420jpeg", 12}, {" C420mpeg2", 12}, {" C420paldv", 12},
       {" C411", 12}, {" C422", 18}, {" C444", 30},     {" C444alpha", 45}, {" Cmono", 0}};
-  for (const auto& [space, chroma_bytes] : spaces) {
+  for (const auto& entry : spaces) {
+    const std::string& space = entry.first;
     CAPTURE(space);
-    const std::string chroma(chroma_bytes, '\x55');
-    const auto frames = read_all(directory.write(
-        "a.y4m", "YUV4MPEG2 W5 H3 F30000:1001 It A0:0" + space + " XCOMMENT\nFRAME\n" +
-                     luma(first) + chroma + "FRAME Ippp XSOME\n" + luma(second) + chroma));
+    const std::string chroma(entry.second, '\x55');
+    std::string video = "YUV4MPEG2 W5 H3 F30000:1001 It A0:0";
+    video.append(space).append(" XCOMMENT\n");
+    video.append("FRAME\n").append(luma(first)).append(chroma);
+    video.append("FRAME Ippp XSOME\n").append(luma(second)).append(chroma);
+    const auto frames = read_all(directory.write("a.y4m", video));
     REQUIRE(frames.size() == 2);
     CHECK(frames[0].pixels == first.pixels);
     CHECK(frames[1].pixels == second.pixels);

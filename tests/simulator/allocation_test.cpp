@@ -1,56 +1,28 @@
-#include <doctest/doctest.h>
+#include "tests/allocation_counter.hpp"
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <doctest/doctest.h>
 
 #include "simulator/arena.hpp"
 
-namespace {
-
-std::atomic<long> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new[](std::size_t size) {
-  return counted(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+using namespace roundel;
 
 TEST_CASE("rendering frame after frame allocates nothing once it is warm") {
-  roundel::ArenaOptions options;
-  options.image_width = 960;
-  options.image_height = 540;
+  ArenaOptions options;
+  options.image_width = 640;
+  options.image_height = 360;
   options.occluder = true;
-  roundel::Arena arena(options);
-  roundel::GreyImage image;
+  Arena arena(options);
+  GreyImage image;
   std::int64_t frame = 0;
-  for (; frame < 10; ++frame) arena.render(frame, image);
-  const long before = allocations;
-  CHECK(before > 0);  // the counter counts
-  for (; frame < 200; ++frame) {
+  {
+    const AllocationCounter counter;
+    for (; frame < 10; ++frame) arena.render(frame, image);
+    CHECK(counter.count() > 0);  // the counter counts
+  }
+  const AllocationCounter counter;
+  for (; frame < 80; ++frame) {
     arena.render(frame, image);
     arena.truth(frame);
   }
-  CHECK(allocations == before);
+  CHECK(counter.count() == 0);
 }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <string>
 
-#include "reference.hpp"
+#include "tests/error_of.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 using reference::Vector2d;
@@ -29,12 +29,7 @@ double wrapped(double angle) {
 
 // The message with which an arena of these options is refused.
 std::string refusal(const ArenaOptions& options) {
-  try {
-    const Arena arena(options);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
+  return error_of([&] { const Arena arena(options); });
 }
 
 bool mentions(const std::string& text, const std::string& part) {
@@ -141,11 +136,11 @@ TEST_CASE("a frame depends on its number alone, not on the frames drawn before")
   Arena forward(options);
   GreyImage image;
   std::vector<GreyImage> frames;
-  for (std::int64_t frame = 0; frame <= 40; ++frame) {
+  for (std::int64_t frame = 0; frame <= 20; ++frame) {
     forward.render(frame, image);
     frames.push_back(image);
   }
-  for (const std::int64_t frame : {0, 1, 17, 40}) {
+  for (const std::int64_t frame : {0, 1, 20}) {
     GreyImage alone;
     Arena fresh(options);
     fresh.render(frame, alone);
@@ -180,7 +175,7 @@ TEST_CASE("what a bar above the arena covers is not visible, and what is visible
   Arena open(options), barred(with_bar);
   GreyImage open_image, barred_image;
   int hidden = 0, touched = 0;
-  for (std::int64_t frame = 0; frame < 400; frame += 20) {
+  for (std::int64_t frame = 0; frame < 400; frame += 40) {
     open.render(frame, open_image);
     barred.render(frame, barred_image);
     const auto& free_markers = open.truth(frame).markers;
@@ -192,8 +187,11 @@ TEST_CASE("what a bar above the arena covers is not visible, and what is visible
       const auto outline = reference::disc_image(open.camera(), markers[i].pose, 0.061, 100);
       const double radius = std::sqrt(outline.area / std::numbers::pi) - 3;
       int differing = 0;
-      for (int v = 0; v < open_image.height; ++v) {
-        for (int u = 0; u < open_image.width; ++u) {
+      const int u0 = static_cast<int>(outline.centroid.x() - radius);
+      const int v0 = static_cast<int>(outline.centroid.y() - radius);
+      const int size = static_cast<int>(2 * radius) + 1;
+      for (int v = v0; v <= v0 + size; ++v) {
+        for (int u = u0; u <= u0 + size; ++u) {
           if ((Vector2d(u, v) - outline.centroid).norm() > radius) continue;
           differing += open_image.view().at(u, v) != barred_image.view().at(u, v) ? 1 : 0;
         }
@@ -203,7 +201,7 @@ TEST_CASE("what a bar above the arena covers is not visible, and what is visible
       touched += differing > 0 ? 1 : 0;
     }
   }
-  CHECK(touched > 5);
+  CHECK(touched > 3);
   // Not many more than those are called hidden: the margin is a few pixels.
   CHECK(hidden >= touched);
   CHECK(hidden < 3 * touched);

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "reference.hpp"
 #include "simulator/renderer.hpp"
 #include "simulator/response.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 
@@ -177,7 +177,8 @@ TEST_CASE("edges mix in linear light whatever the response curve, and flat areas
 TEST_CASE("the response's table is as good as its formula") {
   for (const bool srgb : {false, true}) {
     const Response response(2.2, srgb);
-    for (double light = 0; light <= 255; light += 0.037) {
+    for (int k = 0; k <= 6800; ++k) {
+      const double light = 0.0375 * k;
       const auto in = static_cast<float>(light);
       std::int16_t out = 0;
       response.encode(&in, &out, 1);

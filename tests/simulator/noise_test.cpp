@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "reference.hpp"
 #include "simulator/renderer.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 
@@ -26,11 +26,11 @@ std::vector<double> deviations(Renderer& renderer, std::uint64_t seed) {
 double mean_product(const std::vector<double>& a, const std::vector<double>& b, int du, int dv) {
   double sum = 0;
   int count = 0;
+  const std::ptrdiff_t shift = std::ptrdiff_t{dv} * kWidth + du;
   for (int v = 0; v + dv < kHeight; ++v) {
-    for (int u = 0; u + du < kWidth; ++u, ++count) {
-      sum += a[static_cast<std::size_t>(v * kWidth + u)] *
-             b[static_cast<std::size_t>((v + dv) * kWidth + u + du)];
-    }
+    const double* from = a.data() + std::ptrdiff_t{v} * kWidth;
+    const double* to = b.data() + std::ptrdiff_t{v} * kWidth + shift;
+    for (int u = 0; u + du < kWidth; ++u, ++count) sum += from[u] * to[u];
   }
   return sum / count;
 }
@@ -64,7 +64,10 @@ TEST_CASE("noise is white, within a frame and from frame to frame") {
   const auto frame = deviations(renderer, 1), next = deviations(renderer, 2);
   const double variance = mean_product(frame, frame, 0, 0);
   const double bound = 5 * variance / std::sqrt(static_cast<double>(frame.size()));
-  for (const auto& [du, dv] : {std::array{1, 0}, {2, 0}, {3, 0}, {0, 1}, {1, 1}, {0, 2}, {7, 5}}) {
+  using Shift = std::array<int, 2>;
+  for (const Shift& shift : {Shift{1, 0}, Shift{2, 0}, Shift{3, 0}, Shift{0, 1}, Shift{1, 1},
+                             Shift{0, 2}, Shift{7, 5}}) {
+    const int du = shift[0], dv = shift[1];
     CAPTURE(du);
     CAPTURE(dv);
     CHECK(std::abs(mean_product(frame, frame, du, dv)) < bound);

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "reference.hpp"
 #include "simulator/renderer.hpp"
+#include "tests/simulator/reference.hpp"
 
 using namespace roundel;
 
@@ -56,10 +56,14 @@ struct Edge {
 template <typename Sample>
 std::vector<Edge> edges(double from, double to, double step, const Sample& grey) {
   std::vector<Edge> found;
-  for (double a = from; a < to; a += step) {
-    const double before = grey(a) - 100, after = grey(a + step) - 100;
-    if ((before < 0) == (after < 0)) continue;
-    found.push_back({a + step * before / (before - after), after >= 0});
+  const int steps = static_cast<int>(std::ceil((to - from) / step));
+  double before = grey(from) - 100;
+  for (int k = 0; k < steps; ++k) {
+    const double after = grey(from + (k + 1) * step) - 100;
+    if ((before < 0) != (after < 0)) {
+      found.push_back({from + step * (k + before / (before - after)), after >= 0});
+    }
+    before = after;
   }
   return found;
 }

@@ -53,22 +53,24 @@ GreyImage scaled_and_turned(const Picture& master, double diameter_px, double tu
   const double s = std::sin(turn) * scale;
   GreyImage image;
   image.resize(side, side);
+  std::uint8_t* pixel = image.pixels.data();
   for (int v = 0; v < side; ++v) {
-    for (int u = 0; u < side; ++u) {
+    for (int u = 0; u < side; ++u, ++pixel) {
       int sum = 0;
       if (std::hypot(u - middle, v - middle) > diameter_px * kMarginRatio / 2 + 2) {
-        image.pixels[static_cast<std::size_t>(v * side + u)] = 255;  // off the paper
+        *pixel = 255;  // off the paper
         continue;
       }
       for (int i = 0; i < samples * samples; ++i) {
-        const double x = u + (i % samples + 0.5) / samples - middle;
-        const double y = v + (i / samples + 0.5) / samples - middle;
+        const int column = i % samples;
+        const int row = i / samples;
+        const double x = u + (column + 0.5) / samples - middle;
+        const double y = v + (row + 0.5) / samples - middle;
         const int mu = floored(master_middle + c * x - s * y);
         const int mv = floored(master_middle + s * x + c * y);
         sum += paper.contains(mu, mv) ? paper.at(mu, mv) : 255;
       }
-      image.pixels[static_cast<std::size_t>(v * side + u)] =
-          static_cast<std::uint8_t>(sum / (samples * samples));
+      *pixel = static_cast<std::uint8_t>(sum / (samples * samples));
     }
   }
   return image;

@@ -11,7 +11,8 @@ namespace roundel {
 
 TEST_CASE("cells and ruler stay on the paper, whatever the diameter") {
   for (const char* paper : {"A4", "a3", "Letter"}) {
-    for (double diameter = 5; diameter < 150; diameter += 0.7) {
+    for (int step = 0; step < 208; ++step) {
+      const double diameter = 5 + 0.7 * step;
       const SheetLayout layout = lay_out_sheet(paper, diameter);
       CAPTURE(paper);
       CAPTURE(diameter);
