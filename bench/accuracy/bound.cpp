@@ -9,18 +9,21 @@ namespace roundel::bench {
 
 namespace {
 
-constexpr double kRounding = 1.0 / 12;  // variance of rounding to whole grey levels
-constexpr double kStepPx = 0.05;        // of the outline, for derivatives
-constexpr double kTiltStep = 0.005;     // radians
-constexpr double kBlurStep = 0.02;      // pixels
+constexpr double kRounding = 1.0 / 12;   // variance of rounding to whole grey levels
+constexpr double kStepPx = 0.05;         // of the outline, for derivatives
+constexpr double kTiltStep = 0.005;      // radians
+constexpr double kBlurStep = 0.02;       // pixels
+constexpr double kMinCondition = 1e-10;  // of the information: less is nothing but rounding
 
 class Differentiator {
  public:
   Differentiator(const Experiment& experiment, const Print& print, const PlacedMarker& marker)
-      : experiment_(experiment), print_(print), marker_(marker) {
-    const Composer composer(experiment.camera, experiment.imaging, {});
+      : experiment_(experiment), imaging_(experiment.imaging), print_(print), marker_(marker) {
+    // No edge between plate and floor: nobody tells a tracker how large the plate is.
+    imaging_.floor = imaging_.white;
+    const Composer composer(experiment.camera, imaging_, {});
     const Box image{0, 0, experiment.camera.width, experiment.camera.height};
-    box_ = print(experiment.imaging, composer.response(), marker)
+    box_ = print(imaging_, composer.response(), marker)
                .box.grown(composer.margin() + 2)
                .intersection(image);
   }
@@ -29,9 +32,14 @@ class Differentiator {
 
   // Half the difference of two pictures over the step.
   Eigen::VectorXd by_pose(const Pose& plus, const Pose& minus, double step) const {
-    return (picture(experiment_.imaging, plus) - picture(experiment_.imaging, minus)) / (2 * step);
+    return (picture(imaging_, plus) - picture(imaging_, minus)) / (2 * step);
   }
-  Eigen::VectorXd by_imaging(const Imaging& plus, const Imaging& minus, double step) const {
+  Eigen::VectorXd by_imaging(double Imaging::*parameter, double step) const {
+    Imaging plus = imaging_, minus = imaging_;
+    plus.*parameter += step;
+    minus.*parameter -= step;
+    plus.floor = plus.white;
+    minus.floor = minus.white;
     return (picture(plus, marker_.pose) - picture(minus, marker_.pose)) / (2 * step);
   }
 
@@ -51,6 +59,7 @@ class Differentiator {
   }
 
   const Experiment& experiment_;
+  Imaging imaging_;
   const Print& print_;
   const PlacedMarker& marker_;
   Box box_;
@@ -83,15 +92,11 @@ std::optional<PoseCovariance> cramer_rao_bound(const Experiment& experiment, con
     columns.push_back(picture.by_pose(moved(marker.pose, axis, steps[axis]),
                                       moved(marker.pose, axis, -steps[axis]), steps[axis]));
   }
-  const auto nuisance = [&](double Imaging::*parameter, double step) {
-    Imaging plus = experiment.imaging, minus = plus;
-    plus.*parameter += step;
-    minus.*parameter -= step;
-    columns.push_back(picture.by_imaging(plus, minus, step));
-  };
-  nuisance(&Imaging::black, 1);
-  nuisance(&Imaging::white, 1);
-  if (experiment.imaging.blur_px > kBlurStep) nuisance(&Imaging::blur_px, kBlurStep);
+  columns.push_back(picture.by_imaging(&Imaging::black, 1));
+  columns.push_back(picture.by_imaging(&Imaging::white, 1));
+  if (experiment.imaging.blur_px > kBlurStep) {
+    columns.push_back(picture.by_imaging(&Imaging::blur_px, kBlurStep));
+  }
 
   const auto count = std::ssize(columns);
   Eigen::MatrixXd information(count, count);
@@ -107,7 +112,7 @@ std::optional<PoseCovariance> cramer_rao_bound(const Experiment& experiment, con
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) return std::nullopt;
   const Eigen::LDLT<Eigen::MatrixXd> solver(scale.asDiagonal() * information * scale.asDiagonal());
-  if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
+  if (!solver.isPositive() || solver.rcond() < kMinCondition) return std::nullopt;
   const Eigen::MatrixXd covariance = scale.asDiagonal() *
                                      solver.solve(Eigen::MatrixXd::Identity(count, count)) *
                                      scale.asDiagonal();

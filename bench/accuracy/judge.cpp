@@ -57,12 +57,12 @@ void judge(const Experiment& experiment, int view, const System& system,
     const double reach = std::max(
         kMinReach,
         0.25 * short_side_px(experiment.camera, markers[nearest].pose, experiment.diameter_m));
-    if (distance > reach) {
-      ++verdicts.extra;
-      continue;
-    }
     Match& match = matches[nearest];
-    if (match.sighting != nullptr) ++verdicts.extra;
+    if (distance > reach || match.sighting != nullptr) {
+      ++verdicts.extra;
+      if (sighting.number >= 0) ++verdicts.extra_ids;
+    }
+    if (distance > reach) continue;
     if (match.sighting == nullptr || distance < match.distance) match = {&sighting, distance};
   }
   for (std::size_t i = 0; i < markers.size(); ++i) {

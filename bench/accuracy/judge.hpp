@@ -45,7 +45,8 @@ struct Record {
 
 struct Verdicts {
   std::vector<Record> records;
-  int extra = 0;  // sightings where there is no marker, or the second of one marker
+  int extra = 0;      // sightings where there is no marker, or the second of one marker
+  int extra_ids = 0;  // of them those with an id
 };
 
 // Holds what a system saw in a view against the truth. A sighting belongs to the marker whose

@@ -17,7 +17,7 @@ circular marker's outer black diameter.
 - **found**: share of the judged markers that were seen with the right id; the errors are theirs.
 - **position**: distance between true and measured centre. **φ**: arccos |q1 · q2|, the paper's
   orientation error. **normal**: angle between the printed faces' normals. **flips**: share of the
-  found markers whose normal is off by more than 0.2 rad.
+  found markers whose normal is off by more than 0.2 rad. **false**: sightings where there is no marker.
 - **z²**: mean of (error / published sigma)², flips left out; 1 = honest, above = too sure of itself.
 - **bound**: root mean square of the Cramér–Rao bound of each view's position, given the pixels, noise
   and rounding, with the two grey levels and the blur unknown. It belongs to the print, so that peers
@@ -33,20 +33,22 @@ circular marker's outer black diameter.
 void write_errors(std::ostream& out, const Experiment& experiment,
                   const std::vector<Summary>& summaries) {
   fmt::print(out,
-             "| system | found | missed | no id | wrong id | position mm: mean | median | p99 | "
+             "| system | found | missed | no id | wrong id | false (with id) | position mm: mean | "
+             "median | p99 | "
              "worst | φ rad: mean | median | p99 | worst | normal rad: mean | flips |\n"
-             "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+             "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const Summary& s : summaries) {
     if (s.experiment != experiment.name) continue;
-    fmt::print(
-        out, "| {} | {:.2f} % | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-        s.system, 100 * s.found_share(), s.missed, s.unread, s.wrong_ids,
-        figure(s.position_mm.mean, "{:.3f}"), figure(s.position_mm.median, "{:.3f}"),
-        figure(s.position_mm.p99, "{:.2f}"), figure(s.position_mm.worst, "{:.2f}"),
-        yaw_figure(s, s.phi.mean, "{:.5f}"), yaw_figure(s, s.phi.median, "{:.5f}"),
-        yaw_figure(s, s.phi.p99, "{:.5f}"), yaw_figure(s, s.phi.worst, "{:.5f}"),
-        figure(s.normal.mean, "{:.5f}"),
-        s.found > 0 ? figure(100 * s.flip_share(), "{:.2f} %") : "-");
+    fmt::print(out,
+               "| {} | {:.2f} % | {} | {} | {} | {} ({}) | {} | {} | {} | {} | {} | {} | {} | {} | "
+               "{} | {} |\n",
+               s.system, 100 * s.found_share(), s.missed, s.unread, s.wrong_ids, s.extra,
+               s.extra_ids, figure(s.position_mm.mean, "{:.3f}"),
+               figure(s.position_mm.median, "{:.3f}"), figure(s.position_mm.p99, "{:.2f}"),
+               figure(s.position_mm.worst, "{:.2f}"), yaw_figure(s, s.phi.mean, "{:.5f}"),
+               yaw_figure(s, s.phi.median, "{:.5f}"), yaw_figure(s, s.phi.p99, "{:.5f}"),
+               yaw_figure(s, s.phi.worst, "{:.5f}"), figure(s.normal.mean, "{:.5f}"),
+               s.found > 0 ? figure(100 * s.flip_share(), "{:.2f} %") : "-");
   }
 }
 

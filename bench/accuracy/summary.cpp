@@ -38,6 +38,7 @@ Summary summarise(const Result& result) {
   s.system = result.system;
   s.has_yaw = result.has_yaw;
   s.extra = result.verdicts.extra;
+  s.extra_ids = result.verdicts.extra_ids;
   std::vector<double> position, phi, normal, position_honesty, rotation_honesty, sigma;
   std::vector<double> squared_error, squared_bound, bound_phi;
   for (const Record& record : result.verdicts.records) {

@@ -18,7 +18,8 @@ Distribution distribution_of(std::vector<double> values);
 struct Summary {
   std::string experiment, system;
   bool has_yaw = true, has_sigma = false;
-  int judged = 0, found = 0, unread = 0, wrong_ids = 0, missed = 0, extra = 0, flips = 0;
+  int judged = 0, found = 0, unread = 0, wrong_ids = 0, missed = 0, flips = 0;
+  int extra = 0, extra_ids = 0;           // see Verdicts
   Distribution position_mm, phi, normal;  // of the found markers; radians
 
   // Honesty of the published sigmas, flips left out: the mean over found markers and axes of
