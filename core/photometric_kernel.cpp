@@ -38,7 +38,7 @@ struct PlanePoint {
 
 ROUNDEL_INLINE PlanePoint plane_point(const PhotometricModel& m, const Float8& nx,
                                       const Float8& ny) {
-  PlanePoint p;
+  PlanePoint p{};
   const Float8 depth = 1 / (m.at[2] + m.by_x[2] * nx + m.by_y[2] * ny);
   p.x = (m.at[0] + m.by_x[0] * nx + m.by_y[0] * ny) * depth;
   p.y = (m.at[1] + m.by_x[1] * nx + m.by_y[1] * ny) * depth;
@@ -148,7 +148,7 @@ ROUNDEL_INLINE Expected code_ring(const PhotometricModel& m, const PlanePoint& p
 
   const Float8 centre_part = 1 - ring.value * tooth, ring_part = (1 - centre.value) * tooth;
   const Float8 tooth_part = (1 - centre.value) * ring.value;
-  Expected e;
+  Expected e{};
   e.bright = centre.value + tooth_part * tooth;
   const Float8 by_pixel = -(centre.slope * centre_part + ring.slope * ring_part) * per_blur;
   e.by_radius = by_pixel * pixels_per_unit;
@@ -277,8 +277,8 @@ Kernels best_kernels() {
 }
 
 const Kernels& kernels(VectorUnit unit) {
-  static const Kernels kBest = best_kernels();
-  return unit == VectorUnit::kBest ? kBest : kBaseline;
+  static const Kernels best = best_kernels();
+  return unit == VectorUnit::kBest ? best : kBaseline;
 }
 
 }  // namespace
