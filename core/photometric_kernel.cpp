@@ -165,10 +165,8 @@ template <typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr int kCount = kPhotometricUnknowns;
-  std::array<Float8, kCount*(kCount + 1) / 2> matrix;
-  std::array<Float8, kCount> right;
-  matrix.fill(splat(0));
-  right.fill(splat(0));
+  std::array<Float8, kCount*(kCount + 1) / 2> matrix{};
+  std::array<Float8, kCount> right{};
   Float8 squares = splat(0), weights = splat(0);
   for (int i = 0; i < pixels.count; i += simd::kLanes) {
     const auto load = [i](const float* from) {
@@ -193,7 +191,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
     // eye.
     const float per_height = 1 / m.eye[2];
     const Float8 by_rise = (by_x * (m.eye[0] - p.x) + by_y * (m.eye[1] - p.y)) * per_height;
-    std::array<Float8, kCount> row;
+    std::array<Float8, kCount> row{};
     row[kMoveX] = -by_x;
     row[kMoveY] = -by_y;
     row[kMoveZ] = by_rise;
