@@ -80,7 +80,7 @@ class PhotometricFit {
   };
   struct State {
     Pose pose;
-    double dark, contrast, slope_x, slope_y, blur, shift, inner;
+    double dark = 0, contrast = 0, slope_x = 0, slope_y = 0, blur = 0, shift = 0, inner = 0;
   };
 
   PhotometricModel model_of(const State& state, const Pattern& pattern, double deviation) const;

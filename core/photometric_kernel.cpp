@@ -38,7 +38,7 @@ struct PlanePoint {
 
 ROUNDEL_INLINE PlanePoint plane_point(const PhotometricModel& m, const Float8& nx,
                                       const Float8& ny) {
-  PlanePoint p;
+  PlanePoint p{};
   const Float8 depth = 1 / (m.at[2] + m.by_x[2] * nx + m.by_y[2] * ny);
   p.x = (m.at[0] + m.by_x[0] * nx + m.by_y[0] * ny) * depth;
   p.y = (m.at[1] + m.by_x[1] * nx + m.by_y[1] * ny) * depth;
@@ -148,7 +148,7 @@ ROUNDEL_INLINE Expected code_ring(const PhotometricModel& m, const PlanePoint& p
 
   const Float8 centre_part = 1 - ring.value * tooth, ring_part = (1 - centre.value) * tooth;
   const Float8 tooth_part = (1 - centre.value) * ring.value;
-  Expected e;
+  Expected e{};
   e.bright = centre.value + tooth_part * tooth;
   const Float8 by_pixel = -(centre.slope * centre_part + ring.slope * ring_part) * per_blur;
   e.by_radius = by_pixel * pixels_per_unit;
@@ -165,10 +165,8 @@ template <typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr int kCount = kPhotometricUnknowns;
-  std::array<Float8, kCount*(kCount + 1) / 2> matrix;
-  std::array<Float8, kCount> right;
-  matrix.fill(splat(0));
-  right.fill(splat(0));
+  std::array<Float8, kCount*(kCount + 1) / 2> matrix{};
+  std::array<Float8, kCount> right{};
   Float8 squares = splat(0), weights = splat(0);
   for (int i = 0; i < pixels.count; i += simd::kLanes) {
     const auto load = [i](const float* from) {
@@ -193,7 +191,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
     // eye.
     const float per_height = 1 / m.eye[2];
     const Float8 by_rise = (by_x * (m.eye[0] - p.x) + by_y * (m.eye[1] - p.y)) * per_height;
-    std::array<Float8, kCount> row;
+    std::array<Float8, kCount> row{};
     row[kMoveX] = -by_x;
     row[kMoveY] = -by_y;
     row[kMoveZ] = by_rise;
@@ -277,8 +275,8 @@ Kernels best_kernels() {
 }
 
 const Kernels& kernels(VectorUnit unit) {
-  static const Kernels kBest = best_kernels();
-  return unit == VectorUnit::kBest ? kBest : kBaseline;
+  static const Kernels best = best_kernels();
+  return unit == VectorUnit::kBest ? best : kBaseline;
 }
 
 }  // namespace
