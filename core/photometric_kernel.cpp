@@ -65,6 +65,15 @@ ROUNDEL_INLINE Float8 slope_along(const PlanePoint& p, const Float8& cosine, con
   return simd::sqrt(g0 * g0 + g1 * g1);
 }
 
+// Product of the two gradients, of the radius and of the arc.
+ROUNDEL_INLINE Float8 along_and_across(const PlanePoint& p) {
+  const Float8 g0 = p.cosine * p.grad_x0 + p.sine * p.grad_y0,
+               g1 = p.cosine * p.grad_x1 + p.sine * p.grad_y1;
+  const Float8 h0 = p.cosine * p.grad_y0 - p.sine * p.grad_x0,
+               h1 = p.cosine * p.grad_y1 - p.sine * p.grad_x1;
+  return g0 * h0 + g1 * h1;
+}
+
 // What the model expects of a pixel, and its derivatives.
 struct Expected {
   Float8 bright;             // share of the bright level
@@ -73,7 +82,8 @@ struct Expected {
 };
 
 // Distance of a pixel from a rim in units of the blur, positive outside, and its derivative by the
-// blur's logarithm. Blur makes a curved edge recede toward its centre by sigma^2 / 2r.
+// blur's logarithm. Blur makes a curved edge recede toward its centre by half of sigma^2 over the
+// radius of curvature.
 struct RimDistance {
   Float8 d, by_log_blur;
 };
@@ -81,9 +91,16 @@ struct RimDistance {
 ROUNDEL_INLINE RimDistance rim_distance(const PhotometricModel& m, const PlanePoint& p,
                                         const Float8& pixels_per_unit, float rim,
                                         float dark_outward) {
-  const Float8 recession = (m.blur / (2 * rim)) / pixels_per_unit;
-  const Float8 straight =
-      ((p.radius - rim) * pixels_per_unit - dark_outward * m.shift) * (1 / m.blur);
+  // The curvature of the rim's image: a circle seen at a slant is flat at its near and far side.
+  const Float8 shrink = p.grad_x0 * p.grad_y1 - p.grad_x1 * p.grad_y0;
+  const Float8 squeezed = pixels_per_unit * pixels_per_unit * pixels_per_unit * (1 / rim);
+  const Float8 curvature = shrink * shrink * squeezed;
+  // The radius does not grow evenly along the normal where the image cuts across circles.
+  const Float8 across = along_and_across(p);
+  const Float8 first = (p.radius - rim) * pixels_per_unit;
+  const Float8 uneven = 0.5F * across * across * squeezed;
+  const Float8 recession = (0.5F * m.blur) * curvature;
+  const Float8 straight = (first + uneven * first * first - dark_outward * m.shift) * (1 / m.blur);
   return {straight + recession, recession - straight};
 }
 
