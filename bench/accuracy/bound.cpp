@@ -22,7 +22,7 @@ class Differentiator {
     // No edge between plate and floor: nobody tells a tracker how large the plate is.
     imaging_.floor = imaging_.white;
     const Composer composer(experiment.camera, imaging_, {});
-    const Box image{0, 0, experiment.camera.width, experiment.camera.height};
+    const PixelRange image{0, 0, experiment.camera.width, experiment.camera.height};
     box_ = print(imaging_, composer.response(), marker)
                .box.grown(composer.margin() + 2)
                .intersection(image);
@@ -62,7 +62,7 @@ class Differentiator {
   Imaging imaging_;
   const Print& print_;
   const PlacedMarker& marker_;
-  Box box_;
+  PixelRange box_;
 };
 
 Pose moved(Pose pose, int axis, double step) {

@@ -15,7 +15,7 @@ Drawing drawing_of(SceneMarker marker, const PlacedMarker& placed, const Experim
   marker.velocity = placed.velocity;
   marker.spin = placed.spin;
   const auto figure = std::make_shared<const Figure>(marker, imaging, response, experiment.camera);
-  return {figure->visible() ? figure->box() : Box{}, figure->base_light(),
+  return {figure->visible() ? figure->box() : PixelRange{}, figure->base_light(),
           [figure, &experiment](const FineFrame& frame, CoverageGrid& base, CoverageGrid& print) {
             figure->draw(experiment.camera, frame, base, print);
           }};

@@ -20,8 +20,9 @@ Composer::Composer(const CameraModel& camera, const Imaging& imaging,
   }
 }
 
-const std::vector<float>& Composer::compose(const Box& piece, std::span<const Drawing> drawings) {
-  const Box area = piece.grown(optics_.margin());  // the scene that the pixels see
+const std::vector<float>& Composer::compose(const PixelRange& piece,
+                                            std::span<const Drawing> drawings) {
+  const PixelRange area = piece.grown(optics_.margin());  // the scene that the pixels see
   const int factor = optics_.factor();
   fine_.assign(static_cast<std::size_t>(area.width() * factor) *
                    static_cast<std::size_t>(area.height() * factor),
@@ -32,8 +33,8 @@ const std::vector<float>& Composer::compose(const Box& piece, std::span<const Dr
   return pixels_;
 }
 
-void Composer::paint(const Drawing& drawing, const Box& area) {
-  const Box window = drawing.box.intersection(area);
+void Composer::paint(const Drawing& drawing, const PixelRange& area) {
+  const PixelRange window = drawing.box.intersection(area);
   if (window.empty()) return;
   const int factor = optics_.factor();
   const int width = window.width() * factor, height = window.height() * factor;

@@ -20,10 +20,10 @@ class Composer {
 
   // Light of a piece of the picture, row by row; drawings cover each other in their order. The
   // result holds until the next call.
-  const std::vector<float>& compose(const Box& piece, std::span<const Drawing> drawings);
+  const std::vector<float>& compose(const PixelRange& piece, std::span<const Drawing> drawings);
 
  private:
-  void paint(const Drawing& drawing, const Box& area);
+  void paint(const Drawing& drawing, const PixelRange& area);
 
   Response response_;
   Optics optics_;

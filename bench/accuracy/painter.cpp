@@ -22,7 +22,7 @@ Painter::Painter(const Experiment& experiment, Print print)
                static_cast<std::size_t>(image_.height()));
   for (int top = 0; top < image_.bottom; top += kTile) {
     for (int left = 0; left < image_.right; left += kTile) {
-      compose(Box{left, top, left + kTile, top + kTile}.intersection(image_), {});
+      compose(PixelRange{left, top, left + kTile, top + kTile}.intersection(image_), {});
     }
   }
   empty_ = grey_;
@@ -37,7 +37,7 @@ void Painter::paint(const View& view, GreyImage& out) {
   grey_ = empty_;
   // Where the surroundings of two markers overlap they are composed twice, with the same result.
   for (const Drawing& drawing : drawings) {
-    const Box reach = drawing.box.grown(composer_.margin()).intersection(image_);
+    const PixelRange reach = drawing.box.grown(composer_.margin()).intersection(image_);
     if (!reach.empty()) compose(reach, drawings);
   }
 
@@ -49,7 +49,7 @@ void Painter::paint(const View& view, GreyImage& out) {
   }
 }
 
-void Painter::compose(const Box& piece, std::span<const Drawing> drawings) {
+void Painter::compose(const PixelRange& piece, std::span<const Drawing> drawings) {
   const std::vector<float>& light = composer_.compose(piece, drawings);
   for (int v = piece.top; v < piece.bottom; ++v) {
     composer_.response().encode(

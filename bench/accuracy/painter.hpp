@@ -19,11 +19,11 @@ class Painter {
   void paint(const View& view, GreyImage& out);
 
  private:
-  void compose(const Box& piece, std::span<const Drawing> drawings);
+  void compose(const PixelRange& piece, std::span<const Drawing> drawings);
 
   const Experiment& experiment_;
   Print print_;
-  Box image_;
+  PixelRange image_;
   Composer composer_;
   NoiseTable noise_;
   std::vector<std::int16_t> empty_, grey_;  // without markers; with them. Response's fixed point

@@ -14,7 +14,7 @@ namespace roundel::bench {
 // A marker ready to be drawn: a flat white plate and, relative to its light, what is printed on it
 // (see CoverageGrid and Figure::draw). May borrow what it was made from.
 struct Drawing {
-  Box box;  // pixels that it touches; may reach outside of the image
+  PixelRange box;  // pixels that it touches; may reach outside of the image
   float base_light = 0;
   std::function<void(const FineFrame&, CoverageGrid& base, CoverageGrid& print)> draw;
 };

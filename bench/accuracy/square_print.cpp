@@ -31,7 +31,7 @@ class SquareFigure {
     measure();
   }
 
-  const Box& box() const { return box_; }
+  const PixelRange& box() const { return box_; }
 
   void draw(const FineFrame& frame, CoverageGrid& base, CoverageGrid& print) const {
     for (int k = 0; k < instants_; ++k) {
@@ -53,7 +53,7 @@ class SquareFigure {
   double side_m_, plate_m_, exposure_s_;
   double ink_;  // light, relative to the plate's
   int instants_ = 1;
-  Box box_;
+  PixelRange box_;
 };
 
 Pose SquareFigure::at(double time_s) const {
