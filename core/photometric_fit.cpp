@@ -131,9 +131,15 @@ PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pat
   const bool coded = pattern.kind == Pattern::Kind::kCode;
   m.inner = static_cast<float>(coded ? kCodeInnerRatio : state.inner);
   m.halves = coded ? 2 * pattern.bits : 0;
-  for (int k = 0; k < m.halves; ++k) {
+  const auto bright = [&](int half) {
+    const int k = (half + m.halves) % m.halves;
     const bool bit = ((pattern.word >> (pattern.bits - 1 - k / 2)) & 1U) != 0;
-    m.colours[static_cast<std::size_t>(k)] = bit == (k % 2 == 0) ? 1.0F : 0.0F;
+    return bit == (k % 2 == 0) ? 1U : 0U;
+  };
+  for (int neighbour = 0; neighbour < 5; ++neighbour) {
+    std::uint32_t word = 0;
+    for (int k = 0; k < m.halves; ++k) word |= bright(k + neighbour - 2) << k;
+    m.colours[static_cast<std::size_t>(neighbour)] = static_cast<std::int32_t>(word);
   }
   m.robust_scale = static_cast<float>(kRobust * deviation);
   m.outlier = static_cast<float>(kOutlier * deviation);
