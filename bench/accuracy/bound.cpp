@@ -13,6 +13,7 @@ constexpr double kRounding = 1.0 / 12;   // variance of rounding to whole grey l
 constexpr double kStepPx = 0.05;         // of the outline, for derivatives
 constexpr double kTiltStep = 0.005;      // radians
 constexpr double kBlurStep = 0.02;       // pixels
+constexpr double kLeastChange = 0.1;     // of the whole picture, grey levels, by one step
 constexpr double kMinCondition = 1e-10;  // of the information: less is nothing but rounding
 
 class Differentiator {
@@ -91,6 +92,8 @@ std::optional<PoseCovariance> cramer_rao_bound(const Experiment& experiment, con
   for (int axis = 0; axis < axes; ++axis) {
     columns.push_back(picture.by_pose(moved(marker.pose, axis, steps[axis]),
                                       moved(marker.pose, axis, -steps[axis]), steps[axis]));
+    // A plain ring looks the same whichever way it is turned; what is left is rounding.
+    if (columns.back().norm() * steps[axis] < kLeastChange) return std::nullopt;
   }
   columns.push_back(picture.by_imaging(&Imaging::black, 1));
   columns.push_back(picture.by_imaging(&Imaging::white, 1));
