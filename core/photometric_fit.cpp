@@ -15,7 +15,7 @@ constexpr double kMaxStretch = 0.9;
 // What is known before anything is seen, one standard deviation. Weak against any marker that can
 // be read; they keep what can't be told apart from running away.
 constexpr double kSlopePrior = 0.3;  // of the light, share a radius
-constexpr double kStretchPrior = 0.3;
+constexpr double kStretchPrior = 0.5;
 constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 

@@ -287,22 +287,3 @@ TEST_CASE("fewer unknowns are the first part of the same equations") {
   for (std::size_t i = 0; i < kFollowedUnknowns; ++i) CHECK(few.right_side[i] == all.right_side[i]);
   CHECK(few.right_side[kSlopeX] == 0);
 }
-
-TEST_CASE("a tilted marker's distance has no bias from its blurred and narrow edges") {
-  // Seen at 60 degrees: curvature, uneven scale and neighbouring teeth all matter.
-  CameraModel camera = small_camera();
-  camera.distortion = {};
-  PhotometricFit fit{ResponseCurve::linear()};
-  for (const double tilt : {0.6, 0.9, 1.05}) {
-    CAPTURE(tilt);
-    const Pose truth = tilted(tilt, 1, 0.7, 2.2);
-    Painter painter(camera, {});
-    painter.add({8, *NecklaceCode(8, 1).word(5)}, truth);
-    painter.blur(1);
-    REQUIRE(fit.load(painter.view(), camera, rough_ellipse(camera, truth, kRadius), kRadius, 3));
-    const auto found = fit_code(fit, truth, 5, 8);
-    REQUIRE(found.has_value());
-    CHECK((found->state.pose.position - truth.position).norm() / truth.position.z() < 4e-4);
-    CHECK(orientation_error(found->state.pose.orientation, truth.orientation) < 1e-3);
-  }
-}
