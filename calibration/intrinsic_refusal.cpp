@@ -32,6 +32,37 @@ double tilt_range(std::span<const ViewResult> views) {
 
 }  // namespace
 
+void BoardTally::add(const BoardSighting& sighting) {
+  ++pictures;
+  views += sighting.view.points.empty() ? 0 : 1;
+  markers += sighting.markers;
+  foreign += sighting.foreign;
+  misplaced += sighting.misplaced;
+}
+
+void require_board(const BoardTally& tally, const Board& board) {
+  if (tally.views > 0) return;
+  if (tally.markers + tally.foreign == 0) {
+    throw std::runtime_error(fmt::format(
+        "no marker was found in {}; the board is printed by roundel markers --board, and --bits "
+        "must be as printed (now {}); mirrored pictures can't be read",
+        tally.pictures == 1 ? "the picture" : fmt::format("any of {} pictures", tally.pictures),
+        board.bits));
+  }
+  if (tally.foreign > tally.markers) {
+    throw std::runtime_error(fmt::format(
+        "{} of {} markers have ids that a board of {} x {} does not have (1 to {}): --columns, "
+        "--rows, --bits and --hamming must be as printed",
+        tally.foreign, tally.markers + tally.foreign, board.columns, board.rows, board.count()));
+  }
+  if (2 * tally.misplaced > tally.markers) {
+    throw std::runtime_error(fmt::format(
+        "the markers do not lie as on a board of {} columns and {} rows: --columns and --rows must "
+        "be as printed",
+        board.columns, board.rows));
+  }
+}
+
 void require_views(std::span<const BoardView> views, int width, int height) {
   const auto enough = std::count_if(views.begin(), views.end(), [](const BoardView& view) {
     return view.points.size() >= kMinBoardPoints;
