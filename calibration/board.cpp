@@ -10,8 +10,9 @@
 namespace roundel {
 namespace {
 
-constexpr int kMinSide = 2, kMaxSide = 60;  // markers in a row or column
+constexpr int kMinSide = 2;
 constexpr int kMinMarkers = 6;              // fewer say too little about a view
+constexpr int kMaxMarkers = 200;            // the adjustment's time grows with the cube
 constexpr double kMaxDiameterRatio = 0.83;  // of the spacing; closer markers flow together
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -26,11 +27,12 @@ Eigen::Vector2d Board::centre_of(int id) const {
 }
 
 const Board& checked(const Board& board) {
-  if (board.columns < kMinSide || board.columns > kMaxSide || board.rows < kMinSide ||
-      board.rows > kMaxSide || board.count() < kMinMarkers) {
+  if (board.columns < kMinSide || board.columns > kMaxMarkers || board.rows < kMinSide ||
+      board.rows > kMaxMarkers || board.count() < kMinMarkers || board.count() > kMaxMarkers) {
     refuse(
-        fmt::format("a board has {} to {} columns and rows, and at least {} markers; not {} x {}",
-                    kMinSide, kMaxSide, kMinMarkers, board.columns, board.rows));
+        fmt::format("a board has at least {0} columns and {0} rows, and {1} to {2} markers; not "
+                    "{3} x {4}",
+                    kMinSide, kMinMarkers, kMaxMarkers, board.columns, board.rows));
   }
   if (!(board.diameter_m > 0) || !std::isfinite(board.spacing_m)) {
     refuse("diameter and spacing of a board must be positive");

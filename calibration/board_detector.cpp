@@ -19,7 +19,7 @@ namespace {
 constexpr double kPlaceTolerance = 0.5;  // of the middling marker's diameter
 
 // How parallel markers and board are: paper is not quite flat.
-constexpr double kPaperSigma = 0.02;  // radians
+constexpr double kPaperSigma = 0.03;  // radians
 // A marker that says otherwise by more than this is not understood well enough to be corrected.
 constexpr double kMaxTurn = 0.3;  // radians
 

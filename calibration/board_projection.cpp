@@ -3,18 +3,14 @@
 namespace roundel {
 namespace {
 
-Eigen::Vector3d arm_of(const Pose& pose, double stretch, const Eigen::Vector2d& on_board) {
-  return pose.orientation * Eigen::Vector3d(on_board.x(), on_board.y() * (1 + stretch), 0);
-}
-
 constexpr double kMinDepth = 1e-6;  // metres
 
 }  // namespace
 
-std::optional<BoardProjection> project_board_point(const CameraModel& camera, double stretch,
+std::optional<BoardProjection> project_board_point(const CameraModel& camera,
                                                    const Pose& board_in_camera,
-                                                   const Eigen::Vector2d& on_board) {
-  const Eigen::Vector3d arm = arm_of(board_in_camera, stretch, on_board);
+                                                   const Eigen::Vector3d& place) {
+  const Eigen::Vector3d arm = board_in_camera.orientation * place;
   const Eigen::Vector3d point = arm + board_in_camera.position;
   if (!(point.z() > kMinDepth)) return std::nullopt;
   const Eigen::Vector2d n = point.head<2>() / point.z();
@@ -38,7 +34,7 @@ std::optional<BoardProjection> project_board_point(const CameraModel& camera, do
   Eigen::Matrix<double, 2, 3> by_point;
   by_point << 1, 0, -x, 0, 1, -y;
   by_point = (focal.asDiagonal() * camera.distort_jacobian(n) * by_point / point.z()).eval();
-  by.col(kStretch) = by_point * (board_in_camera.orientation * Eigen::Vector3d(0, on_board.y(), 0));
+  result.by_place = by_point * board_in_camera.orientation.toRotationMatrix();
   result.by_pose.leftCols<3>() = by_point;
   for (int i = 0; i < 2; ++i) {  // a rotation w moves the point by w x arm
     result.by_pose.row(i).tail<3>() = arm.cross(by_point.row(i).transpose()).transpose();
@@ -46,11 +42,9 @@ std::optional<BoardProjection> project_board_point(const CameraModel& camera, do
   return result;
 }
 
-std::optional<Eigen::Vector2d> board_pixel(const CameraModel& camera, double stretch,
-                                           const Pose& board_in_camera,
-                                           const Eigen::Vector2d& on_board) {
-  const Eigen::Vector3d point =
-      arm_of(board_in_camera, stretch, on_board) + board_in_camera.position;
+std::optional<Eigen::Vector2d> board_pixel(const CameraModel& camera, const Pose& board_in_camera,
+                                           const Eigen::Vector3d& place) {
+  const Eigen::Vector3d point = board_in_camera.to_camera(place);
   if (!(point.z() > kMinDepth)) return std::nullopt;
   return camera.to_pixel(camera.distort(point.head<2>() / point.z()));
 }

@@ -16,17 +16,18 @@ struct BoardProjection {
   Eigen::Vector2d pixel;
   Eigen::Matrix<double, 2, kIntrinsicParameters> by_intrinsics;
   Eigen::Matrix<double, 2, 6> by_pose;
+  Eigen::Matrix<double, 2, 3> by_place;  // of the point on the board
 };
 
-// Nothing for points that are not in front of the camera.
-std::optional<BoardProjection> project_board_point(const CameraModel& camera, double stretch,
+// Of a place on the board, metres, board frame. Nothing for points that are not in front of the
+// camera.
+std::optional<BoardProjection> project_board_point(const CameraModel& camera,
                                                    const Pose& board_in_camera,
-                                                   const Eigen::Vector2d& on_board);
+                                                   const Eigen::Vector3d& place);
 
 // The pixel alone.
-std::optional<Eigen::Vector2d> board_pixel(const CameraModel& camera, double stretch,
-                                           const Pose& board_in_camera,
-                                           const Eigen::Vector2d& on_board);
+std::optional<Eigen::Vector2d> board_pixel(const CameraModel& camera, const Pose& board_in_camera,
+                                           const Eigen::Vector3d& place);
 
 // The pose after a step.
 Pose moved(const Pose& pose, const PoseStep& step);

@@ -15,7 +15,9 @@
 namespace roundel {
 namespace {
 
-constexpr double kStretchSigma = 0.005;  // of printers, before anything is seen
+// What printers and paper do to a marker's place, before anything is seen, as shares of the
+// spacing: some tenths of a millimetre in the plane, and a sheet that bends by millimetres.
+const Eigen::Vector3d kOffsetSigma(0.01, 0.01, 0.05);
 
 // Median length of a two-dimensional Gaussian residual of unit deviation.
 constexpr double kRayleighMedian = 1.17741;
@@ -27,8 +29,18 @@ IntrinsicMask mask(const IntrinsicOptions& options) {
   IntrinsicMask estimated;
   estimated.fill(true);
   estimated[kK3] = options.estimate_k3;
-  estimated[kStretch] = options.estimate_stretch;
   return estimated;
+}
+
+BundleOptions bundle_options(std::span<const BoardView> views, const IntrinsicOptions& options) {
+  BundleOptions bundle;
+  bundle.estimated = mask(options);
+  if (options.exact_board) return bundle;
+  for (const BoardView& view : views) {
+    for (const BoardPoint& point : view.points) bundle.markers = std::max(bundle.markers, point.id);
+  }
+  bundle.offset_sigma_m = kOffsetSigma * options.spacing_m;
+  return bundle;
 }
 
 // Deviation of the whitened residuals, by their median.
@@ -36,7 +48,7 @@ double robust_deviation(std::span<const BoardView> views, const BundleState& sta
   std::vector<double> lengths;
   for (std::size_t i = 0; i < views.size(); ++i) {
     for (const BoardPoint& point : views[i].points)
-      lengths.push_back(whitened_residual(point, state.camera, state.stretch, state.poses[i]));
+      lengths.push_back(whitened_residual(point, state, state.poses[i]));
   }
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
@@ -45,7 +57,7 @@ double robust_deviation(std::span<const BoardView> views, const BundleState& sta
 
 // Poses of all views under a camera; those that its lens can't explain, under none.
 BundleState with_poses(std::span<const BoardView> views, const CameraModel& camera) {
-  BundleState state{camera, 0, {}};
+  BundleState state{camera, {}, {}};
   CameraModel pinhole = camera;
   pinhole.distortion = {};
   for (const BoardView& view : views) {
@@ -94,8 +106,7 @@ std::vector<BoardView> without_outliers(std::span<const BoardView> views, Bundle
   for (std::size_t i = 0; i < views.size(); ++i) {
     BoardView view{views[i].picture, {}};
     for (const BoardPoint& point : views[i].points) {
-      if (whitened_residual(point, state.camera, state.stretch, state.poses[i]) < limit)
-        view.points.push_back(point);
+      if (whitened_residual(point, state, state.poses[i]) < limit) view.points.push_back(point);
     }
     if (view.points.size() < kMinBoardPoints) continue;
     kept.push_back(std::move(view));
@@ -124,7 +135,7 @@ std::vector<BoardView> usable(std::span<const BoardView> views, int width, int h
 double squares(const BoardView& view, const BundleState& state, const Pose& pose) {
   double sum = 0;
   for (const BoardPoint& point : view.points) {
-    if (const auto pixel = board_pixel(state.camera, state.stretch, pose, point.on_board))
+    if (const auto pixel = board_pixel(state.camera, pose, state.place(point)))
       sum += (*pixel - point.pixel).squaredNorm();
   }
   return sum;
@@ -164,9 +175,7 @@ IntrinsicCalibration calibrate_intrinsics(std::span<const BoardView> views, int 
   BundleState state = start ? with_poses(all, *start) : first_state(all, width, height);
 
   // Robust first: outliers must not pull the solution that tells them from the others.
-  BundleOptions bundle;
-  bundle.estimated = mask(options);
-  bundle.stretch_sigma = kStretchSigma;
+  BundleOptions bundle = bundle_options(all, options);
   double deviation = robust_deviation(all, state);
   for (int round = 0; round < kMaxRounds; ++round) {
     bundle.residual_sigma = deviation;
@@ -180,14 +189,13 @@ IntrinsicCalibration calibrate_intrinsics(std::span<const BoardView> views, int 
 
   bundle.robust_scale = 0;
   BundleResult adjusted = adjust(used, state, bundle);
-  int unknowns = 6 * static_cast<int>(used.size());
-  for (const bool estimated : bundle.estimated) unknowns += estimated ? 1 : 0;
-  const double freedom = std::max(1.0, 2.0 * static_cast<double>(count_points(used)) - unknowns);
+  const double values = 2 * static_cast<double>(count_points(used));
+  const double freedom = std::max(1.0, values - adjusted.unknowns);
 
   IntrinsicCalibration result;
   result.camera = adjusted.state.camera;
-  result.stretch = adjusted.state.stretch;
-  result.residual_sigma = std::sqrt(2 * adjusted.cost / freedom);
+  result.offsets = adjusted.state.offsets;
+  result.residual_sigma = std::sqrt(2 * adjusted.data_cost / freedom);
   const double scale = result.residual_sigma / bundle.residual_sigma;
   result.covariance = adjusted.covariance * scale * scale;
   tell_views(all, used, adjusted.state, result);

@@ -14,7 +14,11 @@ namespace roundel {
 
 struct IntrinsicOptions {
   bool estimate_k3 = true;
-  bool estimate_stretch = true;  // printers stretch one direction by some tenths of a percent
+  // The board is flat and its markers lie exactly where they should. Otherwise every marker's place
+  // is estimated too, near where it should be: paper is not flat, and printers are off by tenths of
+  // a millimetre, which is far more than the camera's noise.
+  bool exact_board = false;
+  double spacing_m = 0.04;  // of the board: what tenths of a millimetre are measured against
 };
 
 // One view after the adjustment.
@@ -29,7 +33,8 @@ struct ViewResult {
 
 struct IntrinsicCalibration {
   CameraModel camera;
-  double stretch = 0;
+  std::vector<Eigen::Vector3d> offsets;  // of the markers by id - 1, metres, board frame; none
+                                         // if the board is exact
   IntrinsicMatrix covariance = IntrinsicMatrix::Zero();
   double error_px = 0;  // root mean square over the points of all views: "total error"
   double residual_sigma =

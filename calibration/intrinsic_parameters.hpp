@@ -18,21 +18,20 @@ enum IntrinsicParameter {
   kP1,
   kP2,
   kK3,
-  kStretch,  // of the print: how much longer y is than told, beside x; 0.001 is 0.1 %
   kIntrinsicParameters
 };
 
 inline constexpr std::array<const char*, kIntrinsicParameters> kIntrinsicNames = {
-    "fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "print_stretch"};
+    "fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
 
 using IntrinsicVector = Eigen::Matrix<double, kIntrinsicParameters, 1>;
 using IntrinsicMatrix = Eigen::Matrix<double, kIntrinsicParameters, kIntrinsicParameters>;
 using IntrinsicMask = std::array<bool, kIntrinsicParameters>;
 
-inline IntrinsicVector to_vector(const CameraModel& camera, double stretch) {
+inline IntrinsicVector to_vector(const CameraModel& camera) {
   const auto& d = camera.distortion;
   IntrinsicVector v;
-  v << camera.fx, camera.fy, camera.cx, camera.cy, d.k1, d.k2, d.p1, d.p2, d.k3, stretch;
+  v << camera.fx, camera.fy, camera.cx, camera.cy, d.k1, d.k2, d.p1, d.p2, d.k3;
   return v;
 }
 

@@ -32,7 +32,8 @@ double change_px(const CameraModel& a, const CameraModel& b) {
 }  // namespace
 
 PictureCalibration calibrate_from_pictures(Pictures pictures, const Board& board,
-                                           const IntrinsicOptions& options) {
+                                           IntrinsicOptions options) {
+  options.spacing_m = board.spacing_m;
   if (pictures.empty()) throw std::runtime_error("there is no picture to calibrate with");
   const int width = pictures.front().width, height = pictures.front().height;
   PictureCalibration calibration;

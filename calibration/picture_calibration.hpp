@@ -19,8 +19,8 @@ struct PictureCalibration {
 
 // Calibrates a camera of which nothing is known from pictures of a board: detects with a guess,
 // calibrates, detects again with the camera found, until it settles. Throws std::runtime_error with
-// a sentence for the user.
+// a sentence for the user. The options' spacing is the board's.
 PictureCalibration calibrate_from_pictures(Pictures pictures, const Board& board,
-                                           const IntrinsicOptions& options);
+                                           IntrinsicOptions options);
 
 }  // namespace roundel

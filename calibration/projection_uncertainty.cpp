@@ -29,7 +29,7 @@ std::vector<PlaceUncertainty> projection_uncertainty(const CameraModel& camera,
         // A point of a plane at depth one, which turns with the camera about its centre.
         Pose plane;
         plane.position = {normalised->x(), normalised->y(), 1};
-        if (auto projection = project_board_point(camera, 0, plane, {0, 0})) {
+        if (auto projection = project_board_point(camera, plane, {0, 0, 0})) {
           // The arm of the point is zero: its turn about the camera's centre is made by hand.
           for (int axis = 0; axis < 2; ++axis) {
             const Eigen::Vector3d by_point = projection->by_pose.row(axis).head<3>().transpose();

@@ -25,7 +25,7 @@ namespace {
 struct CalibrateCameraOptions {
   std::vector<std::string> files;
   Board board;
-  bool no_k3 = false, exact_print = false;
+  bool no_k3 = false, exact_board = false;
   std::string output, name = "camera";
   bool json = false;
 };
@@ -95,7 +95,7 @@ void calibrate_camera(const CalibrateCameraOptions& options) {
   require_views(views, collector.width(), collector.height());
   IntrinsicOptions intrinsic;
   intrinsic.estimate_k3 = !options.no_k3;
-  intrinsic.estimate_stretch = !options.exact_print;
+  intrinsic.exact_board = options.exact_board;
   report.calibration = calibrate_from_pictures(pictures, options.board, intrinsic);
   const CameraModel& camera = report.calibration.result.camera;
   report.advice = view_advice(views, camera);
@@ -130,10 +130,9 @@ void add_calibrate_camera(CLI::App& calibrate) {
   command->add_option("--name", options->name, "camera_name in the file")->capture_default_str();
   add_board_options(*command, options->board);
   command->add_flag("--no-k3", options->no_k3, "Lens without the third radial coefficient");
-  command->add_flag(
-      "--exact-print", options->exact_print,
-      "The print is as long as told in both directions, to 0.01 % or so; without, its "
-      "stretch is estimated too");
+  command->add_flag("--exact-board", options->exact_board,
+                    "The board is a flat plate or a screen whose markers lie exactly where they "
+                    "should; without, their places are estimated too");
   command->add_flag("--json", options->json, "One JSON object");
   command->callback([options] { calibrate_camera(*options); });
 }

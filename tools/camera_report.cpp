@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "calibration/print_quality.hpp"
+
 namespace roundel {
 namespace {
 
@@ -27,18 +29,23 @@ std::string points_text(const CameraReport& report) {
 }
 
 std::vector<std::string> parameter_lines(const IntrinsicCalibration& result) {
-  const IntrinsicVector values = to_vector(result.camera, result.stretch);
+  const IntrinsicVector values = to_vector(result.camera);
   const IntrinsicVector sigma = result.sigma();
   std::vector<std::string> lines;
-  for (int k = 0; k < kStretch; ++k) {
+  for (int k = 0; k < kIntrinsicParameters; ++k) {
     lines.push_back(fmt::format("{} {}{}", kIntrinsicNames[static_cast<std::size_t>(k)],
                                 with_deviation(values[k], sigma[k]), k < kK1 ? " px" : ""));
   }
-  if (sigma[kStretch] > 0) {
-    lines.push_back(fmt::format("print longer up than across by {} %",
-                                with_deviation(100 * values[kStretch], 100 * sigma[kStretch])));
-  }
   return lines;
+}
+
+std::string print_line(const CameraReport& report) {
+  const PrintQuality print = print_quality(report.board, report.calibration.result.offsets);
+  return fmt::format(
+      "the print, at {:.4g} mm spacing: markers off by {:.3f} mm, stretched by {:.3f} %, "
+      "flat within {:.2f} mm; all taken into account",
+      1000 * report.board.spacing_m, 1000 * print.off_m, 100 * print.stretch,
+      1000 * print.flatness_m);
 }
 
 std::string precision_line(const IntrinsicCalibration& result) {
@@ -68,6 +75,7 @@ std::string camera_report_text(const CameraReport& report) {
   text += fmt::format("\n{} x {} pixels, {}\n{}\n", result.camera.width, result.camera.height,
                       points_text(report), precision_line(result));
   for (const std::string& line : parameter_lines(result)) text += "  " + line + "\n";
+  if (!result.offsets.empty()) text += print_line(report) + "\n";
   if (!report.advice.empty()) text += "a better one needs more views of the board:\n";
   for (const std::string& advice : report.advice) text += "  " + advice + "\n";
   return text;
@@ -76,8 +84,9 @@ std::string camera_report_text(const CameraReport& report) {
 nlohmann::ordered_json camera_report_json(const CameraReport& report) {
   using Json = nlohmann::ordered_json;
   const IntrinsicCalibration& result = report.calibration.result;
-  const IntrinsicVector values = to_vector(result.camera, result.stretch);
+  const IntrinsicVector values = to_vector(result.camera);
   const IntrinsicVector sigma = result.sigma();
+  const PrintQuality print = print_quality(report.board, result.offsets);
   Json parameters = Json::object(), deviations = Json::object();
   for (int k = 0; k < kIntrinsicParameters; ++k) {
     const char* name = kIntrinsicNames[static_cast<std::size_t>(k)];
@@ -106,6 +115,8 @@ nlohmann::ordered_json camera_report_json(const CameraReport& report) {
           {"worst_sigma_px", result.worst_px},
           {"markers", result.points},
           {"outliers", result.outliers},
+          {"print",
+           {{"off_m", print.off_m}, {"stretch", print.stretch}, {"flatness_m", print.flatness_m}}},
           {"rounds", report.calibration.rounds},
           {"views", views},
           {"skipped", skipped},
