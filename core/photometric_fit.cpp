@@ -19,8 +19,10 @@ constexpr double kStretchPrior = 0.5;
 constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
-// Where a fit ends; rounding to whole grey levels and the model itself leave some variance.
-constexpr double kSettled = 1.0, kLeastVariance = 0.25;
+// Where a fit ends: a step that takes so many variances of the residuals off the sum of squares
+// moves the pose by some standard deviations, and what it leaves is of the second order. Rounding
+// to whole grey levels and the model itself leave some variance.
+constexpr double kSettled = 30, kLeastVariance = 0.25;
 
 // Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
 constexpr double kRobust = 3.0, kOutlier = 8.0;
@@ -209,7 +211,6 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
         !(state.contrast > 0) || !(pose.normal().dot(pose.position) < 0)) {
       return std::nullopt;
     }
-    // A gain of one is a move by a standard deviation; what is then left is of the second order.
     const bool settled = step.gain < kSettled && taken >= plan.min_steps;
     if (settled || taken >= plan.max_steps) {
       PhotometricPose result;
@@ -217,6 +218,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.state.pose.orientation = with_positive_w(pose.orientation);
       result.mean_square = step.mean_square;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
+      result.trust = static_cast<double>(sums.weights) / result.pixels;
       result.covariance = to_camera_axes(state, step.mean_square * step.inverse);
       return result;
     }
