@@ -46,9 +46,9 @@ int fitting_column(const LumaView& frame, const Seed& seed, int reach) {
 
 MarkerSearch::MarkerSearch(const DetectorParameters& parameters)
     : parameters_(parameters), finder_(parameters) {
-  // Two rows through the bright centre, so that one spoilt by a tooth does no harm.
+  // A row pair through the bright centre of the smallest marker.
   const double centre_height = kPlainInnerRatioMin * parameters.min_diameter_px;
-  smallest_spacing_ = std::clamp(static_cast<int>(centre_height / 2), 1, 8);
+  smallest_spacing_ = std::clamp(static_cast<int>(centre_height) - 1, 1, 8);
 }
 
 void MarkerSearch::begin(const LumaView& frame) {
