@@ -92,7 +92,7 @@ class PhotometricFit {
   struct Step;
   template <int kCount>
   Step solve(const PhotometricState& state, const Pattern& pattern, const EdgeLook& look,
-             const PhotometricSums& sums) const;
+             const PhotometricSums& sums, const FitPlan& plan, int taken) const;
   PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
                             double deviation) const;
   PhotometricState advanced(const PhotometricState& state, const Vector& step) const;
