@@ -181,6 +181,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   const double radius_m = parameters_.diameter_m / 2;
   const bool loaded = fit_.load(frame, *camera_, segment.ellipse, radius_m, kReach);
   FitPlan plan;
+  plan.rough_steps = 2;
   plan.deviation = kFirstDeviation * segment.levels.contrast();
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];

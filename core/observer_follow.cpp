@@ -18,7 +18,7 @@ constexpr double kMotionStretch = 0.1;
 
 // The picture bears a followed pose out while its residuals stay as they were, about, and hardly a
 // pixel is disbelieved: a bit of another word would be one in twenty.
-constexpr double kMaxGrowth = 2.0, kMinTrust = 0.97;
+constexpr double kMaxGrowth = 1.3, kMinTrust = 0.97;
 
 // The other pose that the same outline allows, seen from far: mirrored in the plane across the line
 // of sight. Good to a few percent of the radius over the distance, which does for an alternative.
@@ -54,7 +54,6 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
   // Motion blur changes with every turn and has to be fitted along.
   const bool in_motion = std::hypot(start.stretch_u, start.stretch_d) > kMotionStretch;
   plan.unknowns = in_motion ? kCodeUnknowns : kFollowedUnknowns;
-  plan.min_steps = 1;
   plan.max_steps = 4;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * segment.levels.contrast();
   EdgeLook look;

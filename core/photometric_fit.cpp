@@ -140,7 +140,8 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
   step.gain = right_side.dot(step.change.template head<kCount>()) / variance;
-  step.last = (step.gain < kSettled && taken >= plan.min_steps) || taken >= plan.max_steps;
+  step.last = (step.gain < kSettled && taken >= std::max(plan.min_steps, plan.rough_steps + 1)) ||
+              taken >= plan.max_steps;
   if (step.last) {
     const Eigen::Matrix<double, kCount, 6> columns =
         solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());
@@ -200,8 +201,10 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
   for (int taken = 1;; ++taken) {
     const PhotometricModel model = model_of(state, pattern, deviation);
     PhotometricSums sums;
-    add_outer_pixels(model, pixels_.outer(), unknowns, sums);
-    if (inside) add_inner_pixels(model, pixels_.inner(), unknowns, sums);
+    PixelColumns outer = pixels_.outer(), inner = pixels_.inner();
+    outer.every = inner.every = taken <= plan.rough_steps ? 2 : 1;
+    add_outer_pixels(model, outer, unknowns, sums);
+    if (inside) add_inner_pixels(model, inner, unknowns, sums);
     const Step step = unknowns == kFollowedUnknowns
                           ? solve<kFollowedUnknowns>(state, pattern, look, sums, plan, taken)
                       : unknowns == kCodeUnknowns

@@ -50,6 +50,7 @@ struct PhotometricState {
 struct FitPlan {
   int unknowns = kPhotometricUnknowns;  // kFollowedUnknowns keeps the others as they are
   double deviation = 0;  // of the residuals, grey levels, as far as it can be foreseen
+  int rough_steps = 1;   // first ones, that use half of the pixels
   int min_steps = 2, max_steps = 6;
 };
 
