@@ -19,5 +19,6 @@ void add_compare(CLI::App& app);
 void add_markers(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_listen(CLI::App& app);
+void add_cameras(CLI::App& app);
 
 }  // namespace roundel

@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   roundel::add_markers(app);
   roundel::add_calibrate(app);
   roundel::add_listen(app);
+  roundel::add_cameras(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
