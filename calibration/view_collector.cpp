@@ -90,6 +90,7 @@ CollectedView ViewCollector::made(const LumaView& frame, const std::string& name
 
 ViewCollector::Outcome ViewCollector::take(const LumaView& frame, const std::string& name) {
   if (!look(frame)) return Outcome::kNoBoard;
+  if (views_.size() >= kMaxPictures) return Outcome::kFull;
   views_.push_back(made(frame, name, last_.edge_width_px));
   return Outcome::kTaken;
 }

@@ -35,7 +35,8 @@ class ViewCollector {
  public:
   enum class Outcome { kTaken, kReplaced, kNoBoard, kMoving, kBlurred, kAlike, kFull };
 
-  static constexpr std::size_t kMaxViews = 40;
+  static constexpr std::size_t kMaxViews = 40;      // out of a stream
+  static constexpr std::size_t kMaxPictures = 200;  // in all
 
   // Throws std::invalid_argument for a board that can't be.
   ViewCollector(const Board& board, int width, int height);
@@ -43,7 +44,8 @@ class ViewCollector {
   // The next frame of a stream; it must have the size given.
   Outcome offer(const LumaView& frame, const std::string& name);
 
-  // A picture that somebody chose: kept if it shows enough of the board, whatever it is like.
+  // A picture that somebody chose: kept if it shows enough of the board, whatever it is like, as
+  // long as there is room.
   Outcome take(const LumaView& frame, const std::string& name);
 
   int width() const { return guess_.width; }

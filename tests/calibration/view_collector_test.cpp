@@ -99,6 +99,15 @@ TEST_CASE("a picture that somebody chose is taken, whatever it is like") {
   CHECK(stream.collector.views()[1].name == "b");
 }
 
+TEST_CASE("there is an end to what is kept") {
+  Stream stream;
+  const GreyImage picture = stream.camera.take(frontal(0, 0, 0.6));
+  for (std::size_t i = 0; i < ViewCollector::kMaxPictures; ++i)
+    CHECK(stream.collector.take(picture.view(), "a") == Outcome::kTaken);
+  CHECK(stream.collector.take(picture.view(), "a") == Outcome::kFull);
+  CHECK(stream.offer(frontal(0.15, 0, 0.6)) == Outcome::kFull);
+}
+
 TEST_CASE("every outcome has words") {
   for (const Outcome outcome :
        {Outcome::kTaken, Outcome::kReplaced, Outcome::kNoBoard, Outcome::kMoving, Outcome::kBlurred,
