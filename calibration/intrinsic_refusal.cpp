@@ -111,12 +111,16 @@ void require_determined(const IntrinsicCalibration& calibration) {
         calibration.error_px, kMaxErrorPx));
   }
   const double focal_sigma = std::max(sigma[kFx] / camera.fx, sigma[kFy] / camera.fy);
-  if (!(focal_sigma <= kMaxFocalSigma)) {
+  if (!sigma.allFinite() || focal_sigma > kMaxFocalSigma) {
+    throw std::runtime_error(fmt::format(
+        "the views leave the focal length uncertain by {:.2g} %, more than {:.1g} %: "
+        "add views with the board closer, and tilted by 20 to 45 degrees in all directions",
+        100 * focal_sigma, 100 * kMaxFocalSigma));
+  }
+  if (!std::isfinite(calibration.worst_px)) {
     throw std::runtime_error(
-        fmt::format("the views leave the focal length uncertain by {:.2g} %, more than {:.1g} %: "
-                    "add views with "
-                    "the board closer, and tilted by 20 to 45 degrees in all directions",
-                    100 * focal_sigma, 100 * kMaxFocalSigma));
+        "the lens that explains the views folds back inside the picture, where the board was not "
+        "seen: add views with the board in the corners, or try --no-k3");
   }
 }
 

@@ -32,7 +32,7 @@ void require_views(std::span<const BoardView> views, std::size_t pictures, int w
 // After outliers have been left out: how many views are left of how many.
 void require_agreement(std::size_t left, std::size_t views);
 
-// After it: tilts, size of the residuals, deviations of the focal length.
+// After it: tilts, size of the residuals, deviations of the focal length, reach of the lens model.
 void require_determined(const IntrinsicCalibration& calibration);
 
 }  // namespace roundel
