@@ -178,7 +178,9 @@ void CameraSource::lose(const std::string& reason) {
   } else {
     note_failure(CameraError(fmt::format("{}: {}", describe(camera_->information), reason)));
   }
-  camera_.reset();  // closed now: otherwise it would come back under another number
+  // Closed now: otherwise it would come back under another number.
+  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, camera_->device->descriptor(), nullptr);
+  camera_.reset();
   counts_ += std::exchange(later_, {});
   schedule_retry();
 }
