@@ -34,10 +34,11 @@ std::vector<std::string> command(const TemporaryDirectory& folder, const CameraM
 
 }  // namespace
 
-DaemonUnderTest::DaemonUnderTest(const Film& film, const std::vector<std::string>& settings)
+DaemonUnderTest::DaemonUnderTest(const Film& film, const std::vector<std::string>& settings,
+                                 const std::vector<std::string>& through)
     : film_(film),
       subscriber_(open_lcm(kUrl, LcmUse::kReceive), "ROUNDEL"),
-      process_(command(folder_, film.camera(), settings)) {}
+      process_(command(folder_, film.camera(), settings, through)) {}
 
 bool DaemonUnderTest::receive(int timeout_ms, const std::function<bool()>& wanted) {
   const std::int64_t end_us = now().mono_us + std::int64_t{timeout_ms} * 1000;

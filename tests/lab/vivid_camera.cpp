@@ -4,11 +4,13 @@
 #include <linux/v4l2-dv-timings.h>
 #include <linux/videodev2.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -59,10 +61,77 @@ std::string node_of(std::uint32_t capabilities) {
   throw std::runtime_error("vivid has no such node");
 }
 
+// Setting them is a change of the source for the camera, also if they stay.
 void set_timings(int device) {
-  v4l2_dv_timings timings = V4L2_DV_BT_CEA_640X480P59_94;
+  v4l2_dv_timings timings{};
+  if (::ioctl(device, VIDIOC_G_DV_TIMINGS, &timings) == 0 && timings.bt.width == 640) return;
+  timings = V4L2_DV_BT_CEA_640X480P59_94;
   ::ioctl(device, VIDIOC_S_DV_TIMINGS, &timings);
 }
+
+// The driver's output: takes pictures into its buffers.
+class OutputStream {
+ public:
+  OutputStream(const std::string& node, std::uint32_t fourcc)
+      : device_(::open(node.c_str(), O_RDWR | O_CLOEXEC)) {
+    set_timings(device_.get());
+    v4l2_format format{};
+    format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    format.fmt.pix.width = 640;
+    format.fmt.pix.height = 480;
+    format.fmt.pix.pixelformat = fourcc;
+    format.fmt.pix.field = V4L2_FIELD_NONE;
+    ::ioctl(device_.get(), VIDIOC_S_FMT, &format);
+    v4l2_requestbuffers request{};
+    request.count = 4;
+    request.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    request.memory = V4L2_MEMORY_MMAP;
+    if (::ioctl(device_.get(), VIDIOC_REQBUFS, &request) != 0) return;
+    for (std::uint32_t index = 0; index < request.count; ++index) {
+      v4l2_buffer buffer = buffer_of(index);
+      if (::ioctl(device_.get(), VIDIOC_QUERYBUF, &buffer) != 0) return;
+      void* const address = ::mmap(nullptr, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED,
+                                   device_.get(), buffer.m.offset);
+      if (address == MAP_FAILED) return;
+      buffers_.emplace_back(static_cast<std::uint8_t*>(address), buffer.length);
+    }
+  }
+  ~OutputStream() {
+    for (const auto& buffer : buffers_) ::munmap(buffer.data(), buffer.size());
+  }
+  OutputStream(const OutputStream&) = delete;
+  OutputStream& operator=(const OutputStream&) = delete;
+
+  // False if the device does not take it.
+  bool show(const std::vector<std::uint8_t>& picture) {
+    v4l2_buffer buffer = buffer_of(filled_);
+    if (filled_ < buffers_.size()) {
+      ++filled_;
+    } else if (buffers_.empty() || ::ioctl(device_.get(), VIDIOC_DQBUF, &buffer) != 0) {
+      return false;
+    }
+    const std::span<std::uint8_t> memory = buffers_[buffer.index];
+    std::memcpy(memory.data(), picture.data(), std::min(memory.size(), picture.size()));
+    buffer.bytesused = static_cast<std::uint32_t>(memory.size());
+    buffer.field = V4L2_FIELD_NONE;
+    if (::ioctl(device_.get(), VIDIOC_QBUF, &buffer) != 0) return false;
+    int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    return filled_ != 2 || ::ioctl(device_.get(), VIDIOC_STREAMON, &type) == 0;
+  }
+
+ private:
+  static v4l2_buffer buffer_of(std::uint32_t index) {
+    v4l2_buffer buffer{};
+    buffer.index = index;
+    buffer.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    buffer.memory = V4L2_MEMORY_MMAP;
+    return buffer;
+  }
+
+  UniqueFd device_;
+  std::vector<std::span<std::uint8_t>> buffers_;
+  std::uint32_t filled_ = 0;  // for the first time
+};
 
 }  // namespace
 
@@ -122,20 +191,9 @@ void VividCamera::feed() {
   }
   std::int64_t shown = 0;
   while (!stop_) {
-    const UniqueFd device(::open(output_.c_str(), O_RDWR | O_CLOEXEC));
-    set_timings(device.get());
-    v4l2_format format{};
-    format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
-    format.fmt.pix.width = 640;
-    format.fmt.pix.height = 480;
-    format.fmt.pix.pixelformat = fourcc_;
-    format.fmt.pix.field = V4L2_FIELD_NONE;
-    ::ioctl(device.get(), VIDIOC_S_FMT, &format);
+    OutputStream output(output_, fourcc_);
     std::int64_t due_us = now().mono_us;
-    while (!stop_) {
-      const std::vector<std::uint8_t>& picture =
-          pictures[static_cast<std::size_t>(film_.shown(shown++))];
-      if (::write(device.get(), picture.data(), picture.size()) < 0) break;
+    while (!stop_ && output.show(pictures[static_cast<std::size_t>(film_.shown(shown++))])) {
       due_us += kPeriodUs;
       const std::int64_t left_us = due_us - now().mono_us;
       if (left_us > 0) ::usleep(static_cast<useconds_t>(left_us));

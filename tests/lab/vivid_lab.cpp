@@ -49,6 +49,8 @@ void check_loss_and_return(DaemonUnderTest& daemon, const char* fault, std::int6
 }
 
 void fail(DaemonUnderTest& daemon, const VividCamera& camera, const char* control) {
+  REQUIRE(daemon.poses_arrive(kPatienceMs));
+  daemon.receive(300);  // a fault may have an echo
   daemon.forget();
   const std::int64_t start_us = now().mono_us;
   camera.set(control, 1);
@@ -59,79 +61,68 @@ void fail(DaemonUnderTest& daemon, const VividCamera& camera, const char* contro
 
 }  // namespace
 
+// One after another on one daemon: it is to stand all of them.
 TEST_CASE("roundeld stands every fault that vivid can inject") {
   const Film& film = Film::shared();
   VividCamera camera(film, V4L2_PIX_FMT_GREY);
   DaemonUnderTest daemon(film, settings("GREY"));
-  REQUIRE(daemon.poses_arrive(kPatienceMs));
+  const bool poses = daemon.poses_arrive(kPatienceMs);
+  INFO(daemon.log());
+  REQUIRE(poses);
   const int descriptors = daemon.descriptors();
 
-  SUBCASE("damaged buffers are left out and counted, and poses go on") {
-    daemon.forget();
-    REQUIRE(daemon.receive(kPatienceMs, [&] { return !daemon.frames().empty(); }));
-    const std::int64_t before = dropped(daemon);
-    for (int i = 0; i < 5; ++i) {
-      camera.set("inject_v4l2_buf_flag_error", 1);
-      daemon.receive(50);
-    }
-    REQUIRE(daemon.poses_arrive(kPatienceMs));
-    CHECK(dropped(daemon) >= before + 5);
-    CHECK_FALSE(ever_lost(daemon));
-    CHECK(fault_in(daemon.frames()) == "");
+  // Damaged buffers are left out and counted, and poses go on.
+  daemon.forget();
+  REQUIRE(daemon.receive(kPatienceMs, [&] { return !daemon.frames().empty(); }));
+  std::int64_t before = dropped(daemon);
+  for (int i = 0; i < 100 && dropped(daemon) < before + 3; ++i) {  // the output takes some of them
+    camera.set("inject_v4l2_buf_flag_error", 1);
+    daemon.receive(50);
   }
-  SUBCASE("buffers that the driver refuses are given back later") {
-    daemon.forget();
-    for (int i = 0; i < 6; ++i) {  // more than there are buffers
-      camera.set("inject_vidioc_qbuf_error", 1);
-      daemon.receive(50);
-    }
-    REQUIRE(daemon.poses_arrive(kPatienceMs));
-    CHECK_FALSE(ever_lost(daemon));
+  CHECK(dropped(daemon) >= before + 3);
+  // Buffers that the driver refuses are given back later; these are more than there are.
+  for (int i = 0; i < 6; ++i) {
+    camera.set("inject_vidioc_qbuf_error", 1);
+    daemon.receive(50);
   }
-  SUBCASE("gaps in the driver's numbers are counted as drops") {
-    daemon.forget();
-    REQUIRE(daemon.receive(kPatienceMs, [&] { return !daemon.frames().empty(); }));
-    const std::int64_t before = dropped(daemon);
-    camera.set("percentage_of_dropped_buffers", 30);
-    daemon.receive(1000);
-    camera.set("percentage_of_dropped_buffers", 0);
-    CHECK(dropped(daemon) > before + 8);
-    CHECK_FALSE(ever_lost(daemon));
-    CHECK(fault_in(daemon.frames()) == "");
-  }
-  SUBCASE("a stream that breaks is started again") {
-    fail(daemon, camera, "inject_fatal_streaming_error");
-    camera.set("inject_vidioc_reqbufs_error", 1);
-    fail(daemon, camera, "inject_fatal_streaming_error");
-    camera.set("inject_vidioc_streamon_error", 1);
-    fail(daemon, camera, "inject_fatal_streaming_error");
-    CHECK(daemon.descriptors() == descriptors);
-  }
-  SUBCASE("a camera that disconnects is taken back") {
-    fail(daemon, camera, "disconnect");
-    CHECK(daemon.descriptors() == descriptors);
-  }
-  SUBCASE("a silent camera is lost, and back with its first frame") {
-    daemon.forget();
-    const std::int64_t start_us = now().mono_us;
-    camera.set("percentage_of_dropped_buffers", 100);
-    daemon.receive(1500);
-    const std::int64_t end_us = now().mono_us;
-    camera.set("percentage_of_dropped_buffers", 0);
-    check_loss_and_return(daemon, "no frames", start_us, end_us);
-  }
-  SUBCASE("numbers and time stamps that wrap do no harm") {
-    camera.set("wrap_sequence_number", 1);
-    camera.set("wrap_timestamp", 1);
-    fail(daemon, camera, "inject_fatal_streaming_error");  // they begin with the next stream
-    daemon.forget();
-    daemon.receive(4000);  // over the wrap, at 128 frames
-    REQUIRE(daemon.frames().size() > 150);
-    CHECK(fault_in(daemon.frames()) == "");
-    CHECK_FALSE(ever_lost(daemon));
-    CHECK(dropped(daemon) < 100);
-    CHECK(daemon.frames().front().header.stamp_source == header_t::STAMP_ARRIVAL);
-  }
+  REQUIRE(daemon.poses_arrive(kPatienceMs));
+  // Gaps in the driver's numbers are drops.
+  before = dropped(daemon);
+  camera.set("percentage_of_dropped_buffers", 30);
+  daemon.receive(1000);
+  camera.set("percentage_of_dropped_buffers", 0);
+  CHECK(dropped(daemon) > before + 8);
+  CHECK_FALSE(ever_lost(daemon));
+  CHECK(fault_in(daemon.frames()) == "");
+
+  // A stream that breaks is started again, also if that fails at first.
+  fail(daemon, camera, "inject_fatal_streaming_error");
+  camera.set("inject_vidioc_reqbufs_error", 1);
+  fail(daemon, camera, "inject_fatal_streaming_error");
+  camera.set("inject_vidioc_streamon_error", 1);
+  fail(daemon, camera, "inject_fatal_streaming_error");
+  fail(daemon, camera, "disconnect");
+  CHECK(daemon.descriptors() == descriptors);
+
+  // A silent camera is lost, and back with its first frame.
+  daemon.forget();
+  const std::int64_t start_us = now().mono_us;
+  camera.set("percentage_of_dropped_buffers", 100);
+  daemon.receive(1500);
+  const std::int64_t end_us = now().mono_us;
+  camera.set("percentage_of_dropped_buffers", 0);
+  check_loss_and_return(daemon, "no frames", start_us, end_us);
+
+  // Numbers and stamps that wrap do no harm. They begin with the next stream.
+  camera.set("wrap_sequence_number", 1);
+  camera.set("wrap_timestamp", 2);
+  fail(daemon, camera, "inject_fatal_streaming_error");
+  daemon.forget();
+  REQUIRE(daemon.receive(kPatienceMs, [&] { return daemon.frames().size() > 150; }));
+  CHECK(fault_in(daemon.frames()) == "");
+  CHECK_FALSE(ever_lost(daemon));
+  CHECK(daemon.frames().back().header.dropped - daemon.frames().front().header.dropped < 100);
+  CHECK(daemon.frames().front().header.stamp_source == header_t::STAMP_ARRIVAL);
   CHECK(daemon.process().wait(std::chrono::milliseconds(0)) == std::nullopt);
 }
 
