@@ -16,19 +16,15 @@ constexpr const char* kUrl = "udpm://239.255.76.70:7720?ttl=0";
 constexpr std::size_t kRobots = 4;
 
 std::vector<std::string> command(const TemporaryDirectory& folder, const CameraModel& camera,
-                                 const std::vector<std::string>& settings) {
+                                 std::vector<std::string> settings,
+                                 const std::vector<std::string>& through) {
   const std::string lens = folder.file("camera.yaml");
   write_camera_file(lens, {"lab", camera});
-  std::vector<std::string> words = {ROUNDELD_BINARY,
-                                    "--set",
-                                    "source=camera",
-                                    "--set",
-                                    std::string("lcm.url=") + kUrl,
-                                    "--set",
-                                    "camera.calibration=" + lens};
-  for (const std::string& setting : settings) {
-    words.insert(words.end(), {"--set", setting});
-  }
+  settings.insert(settings.end(),
+                  {"source=camera", std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
+  std::vector<std::string> words = through;
+  words.emplace_back(ROUNDELD_BINARY);
+  for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
   return words;
 }
 
