@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   roundel::add_simulate(app);
   roundel::add_compare(app);
   roundel::add_markers(app);
+  roundel::add_calibrate(app);
   roundel::add_listen(app);
   roundel::add_cameras(app);
   try {
