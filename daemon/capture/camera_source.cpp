@@ -307,6 +307,19 @@ std::string CameraSource::description() const {
                      camera_->stream->cached() ? ", cached buffers" : "");
 }
 
+// As find_again() knows it. Nothing before it was there for the first time.
+std::string CameraSource::identity() const {
+  if (!before_) return {};
+  return before_->serial.empty() ? fmt::format("{} at {}", before_->card, before_->bus)
+                                 : fmt::format("{}, serial {}", before_->card, before_->serial);
+}
+
+std::string CameraSource::crop() const {
+  const Crop& crop = parameters_.mode.crop;
+  if (crop.empty()) return {};
+  return fmt::format("{}x{} at ({}, {})", crop.width, crop.height, crop.left, crop.top);
+}
+
 std::string CameraSource::explanation_of_drops() const {
   return fmt::format(
       "{} lost before they reached roundeld, {} left out for a newer one, {} damaged, {} too old",

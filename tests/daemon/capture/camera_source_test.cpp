@@ -185,6 +185,7 @@ TEST_CASE("an unplugged camera is lost, closed, and taken back as it was set") {
   camera.state().plugged = false;
   camera.break_off(ENODEV);
   CHECK(reaches(source, CameraState::kLost));
+  CHECK(source.identity() == "Fake, serial A");
   CHECK(camera.state().open_now == 0);
   CHECK(camera.state().mapped_now == 0);
   CHECK_THROWS_AS(source.controls()->list(), CameraError);
@@ -359,6 +360,7 @@ TEST_CASE("a part of the picture is read in place") {
   CHECK(lease->frame().luma.data == camera.state().memory[0].data() + 20 * 64 + 10);
   CHECK(source.width() == 30);
   CHECK(source.height() == 16);
+  CHECK(source.crop() == "30x16 at (10, 20)");
 }
 
 TEST_CASE("taking frames allocates nothing") {
