@@ -60,7 +60,6 @@ void check_in_place(const std::string& name, const CameraParameters& parameters,
   const auto carry = [&](bool count) {
     std::optional<FrameLease> lease = wait_for_frame(source);
     REQUIRE(lease.has_value());
-    const std::int64_t start_us = now().mono_us;
     const LumaView& luma = lease->frame().luma;
     CHECK(mapped_file(luma.data) == "/dev/video0");
     CHECK(mapped_file(&luma.row(luma.height - 1)[(luma.width - 1) * luma.pixel_stride]) ==
@@ -76,11 +75,9 @@ void check_in_place(const std::string& name, const CameraParameters& parameters,
       allocations += counter.count();
       dequeue_to_publish.add(now().mono_us - checked_us);
     }
-    static_cast<void>(start_us);
   };
   for (int i = 0; i < kFrames / 2; ++i) carry(false);
   for (int i = 0; i < kFrames; ++i) carry(true);
-  CHECK(allocations == 0);
   report(
       fmt::format("{}: read in place; dequeue to publish 50 % {:.0f} us, 90 % {:.0f} us, 99 % "
                   "{:.0f} us",
@@ -101,10 +98,11 @@ TEST_CASE("direct formats are read in the driver's own memory, and nothing is al
     UsbCameraDescription description;
     description.formats = {c.format};
     const UsbCamera camera(film, description);
-    check_in_place(c.name, CameraParameters(), film);
+    CHECK(check_in_place(c.name, CameraParameters(), film) == 0);
   }
 }
 
+// They show vivid's own pattern, whatever the tracker makes of it.
 TEST_CASE("multi-planar buffers are read in the driver's own memory") {
   const Film& film = Film::shared();
   VividCamera camera(film, V4L2_PIX_FMT_GREY, "multiplanar=2");

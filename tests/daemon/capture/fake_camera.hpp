@@ -26,8 +26,8 @@ class FakeCamera final : public CameraSystem {
   // A buffer that the driver returns, in the order of these.
   struct Delivery {
     std::optional<std::uint32_t> index = {};  // nothing: the buffer queued first
-    std::uint32_t bytes_used = 0;        // 0: all
-    std::uint32_t flags = 0;             // added to a monotonic stamp of the end of frame
+    std::uint32_t bytes_used = 0;             // 0: all
+    std::uint32_t flags = 0;                  // added to a monotonic stamp of the end of frame
     std::uint32_t sequence = 0;
     std::int64_t stamp_us = 0;  // 0: now
     bool no_clock = false;

@@ -7,10 +7,13 @@
 
 #include <jpeglib.h>
 
+#include "core/grey_image.hpp"
+
 namespace roundel {
 
-// An evenly grey picture as a JPEG with colour, as cameras send it.
-inline std::vector<std::uint8_t> jpeg_bytes(unsigned width, unsigned height, std::uint8_t luma) {
+// A grey picture as a JPEG with colour planes, as cameras send it.
+inline std::vector<std::uint8_t> jpeg_bytes(const GreyImage& picture, int quality) {
+  constexpr std::uint8_t kNoColour = 128;
   jpeg_error_mgr errors;
   jpeg_compress_struct info;
   info.err = jpeg_std_error(&errors);
@@ -18,16 +21,17 @@ inline std::vector<std::uint8_t> jpeg_bytes(unsigned width, unsigned height, std
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   jpeg_mem_dest(&info, &bytes, &size);
-  info.image_width = width;
-  info.image_height = height;
+  info.image_width = static_cast<JDIMENSION>(picture.width);
+  info.image_height = static_cast<JDIMENSION>(picture.height);
   info.input_components = 3;
   info.in_color_space = JCS_YCbCr;
   jpeg_set_defaults(&info);
-  jpeg_set_quality(&info, 100, TRUE);
+  jpeg_set_quality(&info, quality, TRUE);
   jpeg_start_compress(&info, TRUE);
-  std::vector<std::uint8_t> row(std::size_t{3} * width, 128);
-  for (std::size_t u = 0; u < width; ++u) row[3 * u] = luma;
+  std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(picture.width), kNoColour);
   while (info.next_scanline < info.image_height) {
+    const std::uint8_t* const luma = picture.view().row(static_cast<int>(info.next_scanline));
+    for (std::size_t u = 0; u < row.size() / 3; ++u) row[3 * u] = luma[u];
     JSAMPROW pointer = row.data();
     jpeg_write_scanlines(&info, &pointer, 1);
   }
