@@ -104,7 +104,8 @@ TEST_CASE("roundeld works on libcamera's V4L2 compatibility layer") {
   UsbCameraDescription description;
   description.formats = {UsbFormat::kYuyv};
   UsbCamera camera(film, description);
-  DaemonUnderTest daemon(film, {}, {"/usr/bin/env", "LD_PRELOAD=" + layer});
+  DaemonUnderTest daemon(film, {},
+                         {"/usr/bin/env", "LIBCAMERA_LOG_LEVELS=*:DEBUG", "LD_PRELOAD=" + layer});
   const bool poses = daemon.poses_arrive(kPatienceMs);
   INFO(daemon.log());
   REQUIRE(poses);
@@ -113,6 +114,7 @@ TEST_CASE("roundeld works on libcamera's V4L2 compatibility layer") {
   const Difference difference = compare(film, camera, daemon.frames());
   CHECK(difference.worst_px < 0.02);
   CHECK(fault_in(daemon.frames()) == "");
+  report(daemon.log());
   report(fmt::format("{} through libcamera: off by {:.2g} px at worst; stamps of kind {}",
                      daemon.statuses().back().source, difference.worst_px,
                      daemon.frames().back().header.stamp_source));

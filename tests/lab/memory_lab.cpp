@@ -48,8 +48,9 @@ std::optional<FrameLease> wait_for_frame(CameraSource& source) {
   return std::nullopt;
 }
 
-// Tracks and publishes frames of a camera as roundeld does, in this process.
-void check_in_place(const std::string& name, const CameraParameters& parameters, const Film& film) {
+// Tracks and publishes frames of a camera as roundeld does, in this process. Returns how often memory
+// was allocated on the way.
+long check_in_place(const std::string& name, const CameraParameters& parameters, const Film& film) {
   CAPTURE(name);
   CameraSource source(parameters);
   Tracker tracker(DetectorParameters{}, film.camera());
@@ -83,6 +84,7 @@ void check_in_place(const std::string& name, const CameraParameters& parameters,
                   "{:.0f} us",
                   name, dequeue_to_publish.percentile_us(0.5),
                   dequeue_to_publish.percentile_us(0.9), dequeue_to_publish.percentile_us(0.99)));
+  return allocations;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // USB cameras that are unplugged, damaged, silent, twins, and busy.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -30,6 +31,14 @@ UsbCameraDescription description(UsbFormat format, const std::string& serial = "
 std::int64_t wait_for_node(DaemonUnderTest& daemon) {
   daemon.receive(kPatienceMs, [] { return std::filesystem::exists("/dev/video0"); });
   return now().mono_us;
+}
+
+// Whether so many cameras are there, with the links that udev makes.
+bool links_are_there(std::size_t wanted) {
+  const std::vector<CameraInformation> cameras = kernel_cameras().cameras();
+  return cameras.size() == wanted &&
+         std::all_of(cameras.begin(), cameras.end(),
+                     [](const CameraInformation& camera) { return camera.links.size() >= 2; });
 }
 
 // Whether every picture that was published had been sent not long before: nothing old is shown
@@ -181,10 +190,9 @@ TEST_CASE("rules that fit two cameras are told with both, and a link by-id decid
   const Film& film = Film::shared();
   const UsbCamera first(film, description(UsbFormat::kGrey, "FIRST"), 0);
   const UsbCamera second(film, description(UsbFormat::kGrey, "SECOND"), 1);
-  const auto both_there = [] { return kernel_cameras().cameras().size() == 2; };
+  for (int i = 0; i < 1000 && !links_are_there(2); ++i) ::usleep(10'000);
   DaemonUnderTest early(film, {"camera.match_card=Roundel"});
-  early.receive(kPatienceMs, both_there);
-  early.receive(3000);
+  early.receive(500);
   CHECK(early.has_logged("match_card \"Roundel\" fits 2 cameras"));
   early.process().signal(SIGTERM);
   CHECK(early.process().wait(std::chrono::seconds(5)) == 0);

@@ -69,19 +69,28 @@ void set_timings(int device) {
   ::ioctl(device, VIDIOC_S_DV_TIMINGS, &timings);
 }
 
+// The same.
+void set_format(int device, std::uint32_t fourcc) {
+  v4l2_format format{};
+  format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+  ::ioctl(device, VIDIOC_G_FMT, &format);
+  v4l2_pix_format& pixels = format.fmt.pix;
+  if (pixels.pixelformat == fourcc && pixels.width == 640 && pixels.height == 480) return;
+  pixels.pixelformat = fourcc;
+  pixels.width = 640;
+  pixels.height = 480;
+  pixels.field = V4L2_FIELD_NONE;
+  pixels.bytesperline = 0;
+  ::ioctl(device, VIDIOC_S_FMT, &format);
+}
+
 // The driver's output: takes pictures into its buffers.
 class OutputStream {
  public:
   OutputStream(const std::string& node, std::uint32_t fourcc)
       : device_(::open(node.c_str(), O_RDWR | O_CLOEXEC)) {
     set_timings(device_.get());
-    v4l2_format format{};
-    format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
-    format.fmt.pix.width = 640;
-    format.fmt.pix.height = 480;
-    format.fmt.pix.pixelformat = fourcc;
-    format.fmt.pix.field = V4L2_FIELD_NONE;
-    ::ioctl(device_.get(), VIDIOC_S_FMT, &format);
+    set_format(device_.get(), fourcc);
     v4l2_requestbuffers request{};
     request.count = 4;
     request.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
