@@ -16,25 +16,22 @@ constexpr const char* kUrl = "udpm://239.255.76.70:7720?ttl=0";
 constexpr std::size_t kRobots = 4;
 
 std::vector<std::string> command(const TemporaryDirectory& folder, const CameraModel& camera,
-                                 std::vector<std::string> settings,
-                                 const std::vector<std::string>& through) {
+                                 std::vector<std::string> settings) {
   const std::string lens = folder.file("camera.yaml");
   write_camera_file(lens, {"lab", camera});
   settings.insert(settings.end(),
                   {"source=camera", std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
-  std::vector<std::string> words = through;
-  words.emplace_back(ROUNDELD_BINARY);
+  std::vector<std::string> words = {ROUNDELD_BINARY};
   for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
   return words;
 }
 
 }  // namespace
 
-DaemonUnderTest::DaemonUnderTest(const Film& film, const std::vector<std::string>& settings,
-                                 const std::vector<std::string>& through)
+DaemonUnderTest::DaemonUnderTest(const Film& film, const std::vector<std::string>& settings)
     : film_(film),
       subscriber_(open_lcm(kUrl, LcmUse::kReceive), "ROUNDEL"),
-      process_(command(folder_, film.camera(), settings, through)) {}
+      process_(command(folder_, film.camera(), settings)) {}
 
 bool DaemonUnderTest::receive(int timeout_ms, const std::function<bool()>& wanted) {
   const std::int64_t end_us = now().mono_us + std::int64_t{timeout_ms} * 1000;

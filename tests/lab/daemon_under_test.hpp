@@ -16,9 +16,8 @@ namespace roundel {
 // roundeld on a camera, and all that it sends. Times are CLOCK_MONOTONIC, microseconds.
 class DaemonUnderTest {
  public:
-  // settings: "KEY=VALUE". It knows the film's lens. through: a command that becomes roundeld.
-  DaemonUnderTest(const Film& film, const std::vector<std::string>& settings,
-                  const std::vector<std::string>& through = {});
+  // settings: "KEY=VALUE". It knows the film's lens.
+  DaemonUnderTest(const Film& film, const std::vector<std::string>& settings);
 
   struct Frame {
     header_t header{};

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tests/lab/daemon_under_test.hpp"
 #include "tests/lab/film.hpp"
@@ -91,31 +90,4 @@ TEST_CASE("a format that roundeld can't read comes through libv4l2, with a warni
   CHECK(difference.worst_px < 0.2);
   report(fmt::format("BGR3 by libv4l2: off by {:.2g} px on average, {:.2g} at worst",
                      difference.mean_px, difference.worst_px));
-}
-
-// The way to the CSI cameras of a Raspberry Pi; here, libcamera drives the USB camera instead.
-TEST_CASE("roundeld works on libcamera's V4L2 compatibility layer") {
-  const std::string layer = "/usr/lib/x86_64-linux-gnu/v4l2-compat.so";
-  if (!std::filesystem::exists(layer)) {
-    report("libcamera: skipped, package libcamera-v4l2 is missing");
-    return;
-  }
-  const Film& film = Film::shared();
-  UsbCameraDescription description;
-  description.formats = {UsbFormat::kYuyv};
-  UsbCamera camera(film, description);
-  DaemonUnderTest daemon(film, {},
-                         {"/usr/bin/env", "LIBCAMERA_LOG_LEVELS=*:DEBUG", "LD_PRELOAD=" + layer});
-  const bool poses = daemon.poses_arrive(kPatienceMs);
-  INFO(daemon.log());
-  REQUIRE(poses);
-  daemon.forget();
-  REQUIRE(daemon.receive(kPatienceMs, [&] { return daemon.frames().size() >= kFrames; }));
-  const Difference difference = compare(film, camera, daemon.frames());
-  CHECK(difference.worst_px < 0.02);
-  CHECK(fault_in(daemon.frames()) == "");
-  report(daemon.log());
-  report(fmt::format("{} through libcamera: off by {:.2g} px at worst; stamps of kind {}",
-                     daemon.statuses().back().source, difference.worst_px,
-                     daemon.frames().back().header.stamp_source));
 }

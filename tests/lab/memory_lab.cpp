@@ -48,8 +48,8 @@ std::optional<FrameLease> wait_for_frame(CameraSource& source) {
   return std::nullopt;
 }
 
-// Tracks and publishes frames of a camera as roundeld does, in this process. Returns how often memory
-// was allocated on the way.
+// Tracks and publishes frames of a camera as roundeld does, in this process. Returns how often
+// memory was allocated on the way.
 long check_in_place(const std::string& name, const CameraParameters& parameters, const Film& film) {
   CAPTURE(name);
   CameraSource source(parameters);
