@@ -178,7 +178,9 @@ void CameraSource::lose(const std::string& reason) {
   } else {
     note_failure(CameraError(fmt::format("{}: {}", describe(camera_->information), reason)));
   }
-  camera_.reset();  // closed now: otherwise it would come back under another number
+  // Closed now: otherwise it would come back under another number.
+  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, camera_->device->descriptor(), nullptr);
+  camera_.reset();
   counts_ += std::exchange(later_, {});
   schedule_retry();
 }
@@ -303,6 +305,19 @@ std::string CameraSource::description() const {
                      camera_->mode.layout.height, rate, how_it_is_read(format),
                      camera_->mode.emulated ? " after libv4l2's conversion" : "",
                      camera_->stream->cached() ? ", cached buffers" : "");
+}
+
+// As find_again() knows it. Nothing before it was there for the first time.
+std::string CameraSource::identity() const {
+  if (!before_) return {};
+  return before_->serial.empty() ? fmt::format("{} at {}", before_->card, before_->bus)
+                                 : fmt::format("{}, serial {}", before_->card, before_->serial);
+}
+
+std::string CameraSource::crop() const {
+  const Crop& crop = parameters_.mode.crop;
+  if (crop.empty()) return {};
+  return fmt::format("{}x{} at ({}, {})", crop.width, crop.height, crop.left, crop.top);
 }
 
 std::string CameraSource::explanation_of_drops() const {

@@ -23,6 +23,7 @@ expect() {
 }
 
 expect 0 "run [--seconds N] [--robots N] [--host-network]" help
+expect 0 "lab [--long]" help
 expect 0 "usage: ./dev COMMAND"
 expect 0 "usage: ./dev COMMAND" --help
 expect 2 "unknown command 'tset'" tset

@@ -42,7 +42,7 @@ std::string y4m(int width, int height, int frames) {
 }  // namespace
 
 TEST_CASE("help is printed for the program and every subcommand, with status 0") {
-  for (const char* command : {"", "detect", "track", "markers", "simulate", "compare"}) {
+  for (const char* command : {"", "detect", "track", "markers", "simulate", "compare", "cameras"}) {
     const CommandResult result = run_roundel(std::string(command) + " --help");
     CAPTURE(command);
     CHECK(result.status == 0);
