@@ -33,7 +33,7 @@ struct ArenaRequest {
   double corner_diameter_m = 0;      // of their black discs; 0: as all markers
   double certainty_m = 0.0003;       // one standard deviation on the floor to be reached
   double time_limit_s = 30;
-  double tolerance_m = 0;  // of a corner's residual; 0: 0.4 % of the diagonal, 5 mm at least
+  double tolerance_m = 0;  // of a residual; 0: 0.2 % of the diagonal, 3 mm at least
 };
 
 // The camera that a calibration belongs to.
@@ -61,7 +61,6 @@ struct ArenaCalibration {
   double size_by_markers = 1;           // arena by the markers' own diameter, over the given one
   double certainty_m = 0;               // one standard deviation on the floor, worst corner
   int frames = 0;                       // that went into it
-  double marker_diameter_m = 0;         // of the corner markers
   ArenaCamera camera;
   std::string date;     // UTC, ISO 8601
   std::string version;  // of the program

@@ -58,7 +58,7 @@ void check(const ArenaRequest& request) {
   require(in_range(request.corner_height_m, -10, 10), "the corners' height must be -10 to 10 m");
   require(request.corner_diameter_m == 0 || in_range(request.corner_diameter_m, 0.001, 10),
           "the corners' diameter must be 0.001 to 10 m");
-  require(in_range(request.certainty_m, 0.00001, 1), "the certainty must be 0.00001 to 1 m");
+  require(in_range(request.certainty_m, 1e-6, 1), "the certainty must be 0.000001 to 1 m");
   require(in_range(request.time_limit_s, 0.1, 3600), "the time limit must be 0.1 to 3600 s");
   require(request.tolerance_m == 0 || in_range(request.tolerance_m, 0.0001, 10),
           "the tolerance must be 0.0001 to 10 m");
@@ -155,6 +155,20 @@ double ArenaCalibrator::size_by_markers(const Pose& arena_in_camera,
   return corner_scale * sum / static_cast<double>(references.size());
 }
 
+void ArenaCalibrator::refuse_misplaced(const std::vector<ArenaReference>& references) const {
+  const auto worst = std::max_element(references.begin(), references.end(),
+                                      [](const ArenaReference& a, const ArenaReference& b) {
+                                        return a.residual.norm() < b.residual.norm();
+                                      });
+  if (worst->residual.norm() <= corner_tolerance(request_)) return;
+  throw ArenaRefusal(fmt::format(
+      "marker {}is {} from where it should be ({} is allowed): it should be at ({:g}, {:g}), and "
+      "is at ({:.3f}, {:.3f})",
+      worst->id < 0 ? "" : fmt::format("{} ", worst->id), millimetres(worst->residual.norm()),
+      millimetres(corner_tolerance(request_)), worst->place.x(), worst->place.y(),
+      worst->place.x() + worst->residual.x(), worst->place.y() + worst->residual.y()));
+}
+
 ArenaCalibration ArenaCalibrator::result() const {
   if (collector_.frames() < kLeastFrames) {
     throw ArenaRefusal(fmt::format("only {} frames came, at least {} are needed",
@@ -173,15 +187,8 @@ ArenaCalibration ArenaCalibrator::result() const {
   for (std::size_t i = 0; i < found.size(); ++i) {
     const StillMarker& marker = found[i].marker;
     result.references.push_back({marker.id, found[i].place, marker.pixel, off[i]});
-    if (off[i].norm() > corner_tolerance(request_)) {
-      throw ArenaRefusal(fmt::format(
-          "marker {}is {} from where it should be ({} is allowed): it should be at ({:g}, {:g}), "
-          "and is at ({:.3f}, {:.3f})",
-          marker.id < 0 ? "" : fmt::format("{} ", marker.id), millimetres(off[i].norm()),
-          millimetres(corner_tolerance(request_)), found[i].place.x(), found[i].place.y(),
-          found[i].place.x() + off[i].x(), found[i].place.y() + off[i].y()));
-    }
   }
+  refuse_misplaced(result.references);
   const std::array<Eigen::Vector3d, 4> places = corner_places(request_);
   for (std::size_t i = 0; i < 4; ++i) {
     // Of a corner that an anchor stands in for nothing is known.

@@ -40,6 +40,7 @@ class ArenaCalibrator {
   std::vector<SeenReference> references() const;
   void add_anchors(const std::vector<StillMarker>& still,
                    std::vector<SeenReference>& references) const;
+  void refuse_misplaced(const std::vector<ArenaReference>& references) const;
   double size_by_markers(const Pose& arena_in_camera,
                          std::span<const SeenReference> references) const;
 

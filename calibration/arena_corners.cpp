@@ -151,7 +151,8 @@ std::array<Eigen::Vector3d, 4> corner_places(const ArenaRequest& request) {
 }
 
 double corner_tolerance(const ArenaRequest& request) {
-  constexpr double kShare = 0.004, kLeast = 0.005;
+  // Six unknowns take up most of what four corners are off: what is left is about half of it.
+  constexpr double kShare = 0.002, kLeast = 0.003;
   if (request.tolerance_m > 0) return request.tolerance_m;
   return std::max(kLeast, kShare * std::hypot(request.width_m, request.height_m));
 }
