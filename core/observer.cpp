@@ -23,7 +23,7 @@ constexpr double kToothEdgeNoise = 0.15;
 constexpr double kMaxResidual = 0.12;
 
 // A hypothesis behind by so much in its log-likelihood before it is refined stays behind.
-constexpr double kDecided = 60;
+constexpr double kDecided = 1000;
 
 // How far a plain marker's edges may be shifted as a whole, pixels.
 constexpr double kPlainShiftSigma = 0.02;

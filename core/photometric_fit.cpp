@@ -24,6 +24,9 @@ constexpr double kSlopePrior = 0.3;  // of the light, share a radius
 constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
+// Where a fit ends; rounding to whole grey levels and the model itself leave some variance.
+constexpr double kSettled = 1.0, kLeastVariance = 0.25;
+
 // Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
 constexpr double kRobust = 3.0, kOutlier = 8.0;
 
@@ -131,9 +134,15 @@ PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pat
   const bool coded = pattern.kind == Pattern::Kind::kCode;
   m.inner = static_cast<float>(coded ? kCodeInnerRatio : state.inner);
   m.halves = coded ? 2 * pattern.bits : 0;
-  for (int k = 0; k < m.halves; ++k) {
+  const auto bright = [&](int half) {
+    const int k = (half + m.halves) % m.halves;
     const bool bit = ((pattern.word >> (pattern.bits - 1 - k / 2)) & 1U) != 0;
-    m.colours[static_cast<std::size_t>(k)] = bit == (k % 2 == 0) ? 1.0F : 0.0F;
+    return bit == (k % 2 == 0) ? 1U : 0U;
+  };
+  for (int neighbour = 0; neighbour < 5; ++neighbour) {
+    std::uint32_t word = 0;
+    for (int k = 0; k < m.halves; ++k) word |= bright(k + neighbour - 2) << k;
+    m.colours[static_cast<std::size_t>(neighbour)] = static_cast<std::int32_t>(word);
   }
   m.robust_scale = static_cast<float>(kRobust * deviation);
   m.outlier = static_cast<float>(kOutlier * deviation);
@@ -215,8 +224,10 @@ std::optional<PhotometricPose> PhotometricFit::fit(const Pose& start, const Patt
         !(state.contrast > 0) || !(state.pose.normal().dot(state.pose.position) < 0)) {
       return std::nullopt;
     }
-    constexpr double kSettled = 0.02;  // pixels
-    const bool settled = change.head<2>().norm() * radius_px_ < kSettled;
+    // What the step takes off the sum of squares, in units of the residuals' variance: one is a move
+    // by a standard deviation, and what is then left to do is of the second order.
+    const double gain = right_side.dot(change) / std::max(mean_square, kLeastVariance);
+    const bool settled = gain < kSettled;
     if ((settled && step >= 2) || step >= max_steps) {
       PhotometricPose result;
       result.pose = {state.pose.position, with_positive_w(state.pose.orientation)};

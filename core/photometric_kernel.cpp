@@ -65,6 +65,15 @@ ROUNDEL_INLINE Float8 slope_along(const PlanePoint& p, const Float8& cosine, con
   return simd::sqrt(g0 * g0 + g1 * g1);
 }
 
+// Product of the two gradients, of the radius and of the arc.
+ROUNDEL_INLINE Float8 along_and_across(const PlanePoint& p) {
+  const Float8 g0 = p.cosine * p.grad_x0 + p.sine * p.grad_y0,
+               g1 = p.cosine * p.grad_x1 + p.sine * p.grad_y1;
+  const Float8 h0 = p.cosine * p.grad_y0 - p.sine * p.grad_x0,
+               h1 = p.cosine * p.grad_y1 - p.sine * p.grad_x1;
+  return g0 * h0 + g1 * h1;
+}
+
 // What the model expects of a pixel, and its derivatives.
 struct Expected {
   Float8 bright;             // share of the bright level
@@ -73,7 +82,8 @@ struct Expected {
 };
 
 // Distance of a pixel from a rim in units of the blur, positive outside, and its derivative by the
-// blur's logarithm. Blur makes a curved edge recede toward its centre by sigma^2 / 2r.
+// blur's logarithm. Blur makes a curved edge recede toward its centre by half of sigma^2 over the
+// radius of curvature.
 struct RimDistance {
   Float8 d, by_log_blur;
 };
@@ -81,9 +91,16 @@ struct RimDistance {
 ROUNDEL_INLINE RimDistance rim_distance(const PhotometricModel& m, const PlanePoint& p,
                                         const Float8& pixels_per_unit, float rim,
                                         float dark_outward) {
-  const Float8 recession = (m.blur / (2 * rim)) / pixels_per_unit;
-  const Float8 straight =
-      ((p.radius - rim) * pixels_per_unit - dark_outward * m.shift) * (1 / m.blur);
+  // The curvature of the rim's image: a circle seen at a slant is flat at its near and far side.
+  const Float8 shrink = p.grad_x0 * p.grad_y1 - p.grad_x1 * p.grad_y0;
+  const Float8 squeezed = pixels_per_unit * pixels_per_unit * pixels_per_unit * (1 / rim);
+  const Float8 curvature = shrink * shrink * squeezed;
+  // The radius does not grow evenly along the normal where the image cuts across circles.
+  const Float8 across = along_and_across(p);
+  const Float8 first = (p.radius - rim) * pixels_per_unit;
+  const Float8 uneven = 0.5F * across * across * squeezed;
+  const Float8 recession = (0.5F * m.blur) * curvature;
+  const Float8 straight = (first + uneven * first * first - dark_outward * m.shift) * (1 / m.blur);
   return {straight + recession, recession - straight};
 }
 
@@ -104,59 +121,89 @@ ROUNDEL_INLINE Expected plain_centre(const PhotometricModel& m, const PlanePoint
   return {edge.value, -by_unit, splat(0), -by_pixel, -edge.slope * rim.by_log_blur, by_unit};
 }
 
-ROUNDEL_INLINE Expected code_ring(const PhotometricModel& m, const PlanePoint& p) {
-  const Float8 pixels_per_unit = 1 / slope_along(p, p.cosine, p.sine);
-  const Float8 pixels_per_arc = 1 / slope_along(p, -p.sine, p.cosine);
-  const RimDistance inner = rim_distance(m, p, pixels_per_unit, m.inner, -1.0F);
-  const RimDistance outer = rim_distance(m, p, pixels_per_unit, float(kCodeOuterRatio), -1.0F);
-  const Edge centre = edge_profile(-inner.d), ring = edge_profile(-outer.d);
+// How the ring's teeth look along the arc, without its rims; distances in units of the blur.
+struct Teeth {
+  Float8 value;                      // share of the bright level
+  Float8 by_arc, by_shift, by_blur;  // by a distance along the arc, the shift, the blur's logarithm
+};
 
-  // The half-tooth of the pixel, and how far its two borders are.
+// Adds the border of two half-teeth. `d` is the distance from it into the half-tooth at hand,
+// `step` the colour beyond it less the colour on this side, `forward` +1 where the border lies at a
+// larger angle. Dark grows over bright: a border moves away from its darker side.
+ROUNDEL_INLINE void add_border(const PhotometricModel& m, const Float8& distance,
+                               const Float8& step, float forward, Teeth& teeth) {
+  const float shift = m.shift / m.blur;
+  const Float8 d = distance + step * shift;
+  const Edge edge = edge_profile(-d);
+  const Float8 height = step * edge.slope;
+  teeth.value += step * edge.value;
+  teeth.by_arc += forward * height;
+  teeth.by_shift -= step * height;
+  teeth.by_blur += height * (d - step * shift);
+}
+
+ROUNDEL_INLINE Teeth teeth_along(const PhotometricModel& m, const PlanePoint& p,
+                                 const Float8& pixels_per_arc, const Float8& across) {
   const float halves = static_cast<float>(m.halves);
   const Float8 position = simd::turn_of(p.x, p.y) * halves;
   Int8 k = __builtin_convertvector(position, Int8);
   k = k >= m.halves ? k - m.halves : k;
   const Float8 within = position - __builtin_convertvector(k, Float8);
-  Float8 colour, before, after;
-  for (int i = 0; i < simd::kLanes; ++i) {
-    const int here = k[i];
-    colour[i] = m.colours[static_cast<std::size_t>(here)];
-    before[i] = m.colours[static_cast<std::size_t>(here == 0 ? m.halves - 1 : here - 1)];
-    after[i] = m.colours[static_cast<std::size_t>(here + 1 == m.halves ? 0 : here + 1)];
-  }
-  const float half_angle = 6.2831853F / halves;
-  // Distance to a straight border: the sine, by its series (the angle is below a half-tooth, 0.8
-  // rad for the shortest code).
-  const auto to_border = [&](const Float8& angle) {
-    const Float8 a2 = angle * angle;
-    return p.radius * pixels_per_arc *
-           (angle * (1 + a2 * (-1 / 6.0F + a2 * (1 / 120.0F + a2 * (-1 / 5040.0F)))));
+  const auto colour_at = [&](std::size_t neighbour) {
+    const Int8 word = Int8{} + m.colours[neighbour];
+    return __builtin_convertvector((word >> k) & 1, Float8);
   };
-  const Float8 to_before = before - colour, to_after = after - colour;
-  const float per_blur = 1 / m.blur;
-  // Dark grows over bright: a border moves away from its darker side.
-  const Float8 d_before = (to_border(within * half_angle) + to_before * m.shift) * per_blur;
-  const Float8 d_after = (to_border((1 - within) * half_angle) + to_after * m.shift) * per_blur;
-  const Edge low = edge_profile(-d_before), high = edge_profile(-d_after);
-  const Float8 tooth = colour + to_before * low.value + to_after * high.value;
-  const Float8 tooth_by_pixel = (to_after * high.slope - to_before * low.slope) * per_blur;
-  const Float8 tooth_by_shift =
-      -(to_before * to_before * low.slope + to_after * to_after * high.slope) * per_blur;
-  const Float8 tooth_by_blur =
-      to_before * low.slope * d_before + to_after * high.slope * d_after -
-      (to_before * to_before * low.slope + to_after * to_after * high.slope) * (m.shift * per_blur);
+  const float half_angle = 6.2831853F / halves;
+  const Float8 blurs_per_arc = p.radius * pixels_per_arc * (1 / m.blur);
+  // What the pixel's own gradient gets wrong for a border some angle away.
+  const Float8 askew = across * pixels_per_arc * pixels_per_arc;
+  // Distance to a straight border: the sine, by its series (the angle is below one and a half
+  // half-teeth).
+  const auto distance = [&](const Float8& angle, float forward) {
+    const Float8 a2 = angle * angle;
+    const Float8 sine = angle * (1 + a2 * (-1 / 6.0F + a2 * (1 / 120.0F + a2 * (-1 / 5040.0F))));
+    return blurs_per_arc * sine * (1 + forward * askew * angle);
+  };
+  const Float8 colour = colour_at(2);
+  const Float8 to_before = within * half_angle, to_after = (1 - within) * half_angle;
+  Teeth teeth{colour, splat(0), splat(0), splat(0)};
+  add_border(m, distance(to_before, -1), colour_at(1) - colour, -1, teeth);
+  add_border(m, distance(to_after, 1), colour_at(3) - colour, 1, teeth);
+  // The borders behind those show only where teeth are narrow.
+  constexpr float kFar = 3.5F;  // blurs
+  if (simd::any(blurs_per_arc * half_angle < kFar)) {
+    add_border(m, distance(to_before + half_angle, -1), colour_at(0) - colour_at(1), -1, teeth);
+    add_border(m, distance(to_after + half_angle, 1), colour_at(4) - colour_at(3), 1, teeth);
+  }
+  return teeth;
+}
 
-  const Float8 centre_part = 1 - ring.value * tooth, ring_part = (1 - centre.value) * tooth;
+ROUNDEL_INLINE Expected code_ring(const PhotometricModel& m, const PlanePoint& p) {
+  const Float8 pixels_per_unit = 1 / slope_along(p, p.cosine, p.sine);
+  const Float8 pixels_per_arc = 1 / slope_along(p, -p.sine, p.cosine);
+  const Float8 across = along_and_across(p);
+  const RimDistance inner = rim_distance(m, p, pixels_per_unit, m.inner, -1.0F);
+  const RimDistance outer = rim_distance(m, p, pixels_per_unit, float(kCodeOuterRatio), -1.0F);
+  const Edge centre = edge_profile(-inner.d), ring = edge_profile(-outer.d);
+  const Teeth teeth = teeth_along(m, p, pixels_per_arc, across);
+
+  const float per_blur = 1 / m.blur;
+  const Float8 centre_part = 1 - ring.value * teeth.value;
+  const Float8 ring_part = (1 - centre.value) * teeth.value;
   const Float8 tooth_part = (1 - centre.value) * ring.value;
+  // Where rims and borders do not cross at right angles in the image, blur mixes them otherwise
+  // than a product does (the bivariate normal distribution, to first order in the correlation).
+  const Float8 askew = across * pixels_per_unit * pixels_per_arc * teeth.by_arc *
+                       (centre.slope * ring.value - ring.slope * (1 - centre.value));
   Expected e{};
-  e.bright = centre.value + tooth_part * tooth;
+  e.bright = centre.value + tooth_part * teeth.value + askew;
   const Float8 by_pixel = -(centre.slope * centre_part + ring.slope * ring_part) * per_blur;
   e.by_radius = by_pixel * pixels_per_unit;
-  e.by_arc = tooth_by_pixel * tooth_part * pixels_per_arc;
-  e.by_shift = by_pixel + tooth_by_shift * tooth_part;
+  e.by_arc = teeth.by_arc * tooth_part * pixels_per_arc * per_blur;
+  e.by_shift = by_pixel + teeth.by_shift * tooth_part * per_blur;
   e.by_blur = -(centre.slope * inner.by_log_blur * centre_part +
                 ring.slope * outer.by_log_blur * ring_part) +
-              tooth_by_blur * tooth_part;
+              teeth.by_blur * tooth_part;
   e.by_inner = splat(0);
   return e;
 }
@@ -165,10 +212,8 @@ template <typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr int kCount = kPhotometricUnknowns;
-  std::array<Float8, kCount*(kCount + 1) / 2> matrix;
-  std::array<Float8, kCount> right;
-  matrix.fill(splat(0));
-  right.fill(splat(0));
+  std::array<Float8, kCount*(kCount + 1) / 2> matrix{};
+  std::array<Float8, kCount> right{};
   Float8 squares = splat(0), weights = splat(0);
   for (int i = 0; i < pixels.count; i += simd::kLanes) {
     const auto load = [i](const float* from) {
@@ -193,7 +238,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
     // eye.
     const float per_height = 1 / m.eye[2];
     const Float8 by_rise = (by_x * (m.eye[0] - p.x) + by_y * (m.eye[1] - p.y)) * per_height;
-    std::array<Float8, kCount> row;
+    std::array<Float8, kCount> row{};
     row[kMoveX] = -by_x;
     row[kMoveY] = -by_y;
     row[kMoveZ] = by_rise;

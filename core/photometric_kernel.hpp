@@ -46,7 +46,9 @@ struct PhotometricModel {
   float dark, contrast, slope_x, slope_y, blur, shift;
   float inner;                              // rim of the bright centre
   int halves;                               // half-teeth of the code, 0 without
-  std::array<float, 2 * kMaxBits> colours;  // of the half-teeth, 1 bright, 0 dark
+  // Bit k of the middle word: half-tooth k is bright; of the others: its neighbour two before, one
+  // before, one after, two after.
+  std::array<std::int32_t, 5> colours;
   float robust_scale;                       // residuals beyond it lose weight, grey levels
   float outlier;                            // residuals beyond it count for nothing
 };

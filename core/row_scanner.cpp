@@ -54,7 +54,8 @@ double estimate_noise(const LumaView& frame) {
 
 void RowScanner::smooth(const LumaView& frame, int v, int u0, int u1) {
   const int count = u1 - u0 + 1;
-  line_.resize(static_cast<std::size_t>((count + kBlock - 1) / kBlock * kBlock));
+  const int blocks = (count + kBlock - 1) / kBlock;
+  line_.resize(static_cast<std::size_t>(blocks) * kBlock);
   std::uint8_t* out = line_.data();
   const auto average = [&](const auto* upper, const auto* lower, auto stride) {
     for (int i = 0; i + 1 < count; ++i) {

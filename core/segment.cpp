@@ -33,15 +33,15 @@ struct EllipseAxes {
 
 // Unit directions; a table, because the levels are taken for every marker of every frame.
 const std::array<std::array<double, 2>, kDirections>& directions() {
-  static const auto kTable = [] {
-    std::array<std::array<double, 2>, kDirections> table{};
+  static const auto table = [] {
+    std::array<std::array<double, 2>, kDirections> made{};
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5) / kDirections;
-      table[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
+      made[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
     }
-    return table;
+    return made;
   }();
-  return kTable;
+  return table;
 }
 
 }  // namespace
@@ -67,9 +67,10 @@ std::optional<Levels> measure_levels(const LumaView& frame, const Ellipse& ellip
   // The middle half of each list: neither glare on the ring nor a neighbour in the margin counts.
   const auto trimmed_mean = [](auto& list, std::size_t count) {
     std::sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::size_t quarter = count / 4;
     double sum = 0;
-    for (std::size_t i = count / 4; i < count - count / 4; ++i) sum += list[i];
-    return sum / static_cast<double>(count - 2 * (count / 4));
+    for (std::size_t i = quarter; i < count - quarter; ++i) sum += list[i];
+    return sum / static_cast<double>(count - 2 * quarter);
   };
   Levels levels;
   levels.dark = trimmed_mean(ring, ring_count);

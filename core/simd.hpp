@@ -37,6 +37,11 @@ ROUNDEL_INLINE Float8 sqrt(const Float8& a) {
   return root;
 }
 
+ROUNDEL_INLINE bool any(const Int8& mask) {
+  const Int8 half = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3);
+  return (half[0] | half[1] | half[2] | half[3]) != 0;
+}
+
 ROUNDEL_INLINE float sum(const Float8& a) {
   return ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]));
 }

@@ -37,12 +37,12 @@ int pieces_for(double length_px) {
 
 }  // namespace
 
-Box Box::intersection(const Box& o) const {
+PixelRange PixelRange::intersection(const PixelRange& o) const {
   return {std::max(left, o.left), std::max(top, o.top), std::min(right, o.right),
           std::min(bottom, o.bottom)};
 }
 
-Box Box::hull(const Box& o) const {
+PixelRange PixelRange::hull(const PixelRange& o) const {
   if (empty()) return o;
   if (o.empty()) return *this;
   return {std::min(left, o.left), std::min(top, o.top), std::max(right, o.right),

@@ -12,16 +12,16 @@
 namespace roundel {
 
 // A range of pixels, half-open: [left, right) x [top, bottom).
-struct Box {
+struct PixelRange {
   int left = 0, top = 0, right = 0, bottom = 0;
 
   int width() const { return right - left; }
   int height() const { return bottom - top; }
   bool empty() const { return left >= right || top >= bottom; }
-  Box grown(int by) const { return {left - by, top - by, right + by, bottom + by}; }
-  Box intersection(const Box& other) const;
-  Box hull(const Box& other) const;
-  bool operator==(const Box&) const = default;
+  PixelRange grown(int by) const { return {left - by, top - by, right + by, bottom + by}; }
+  PixelRange intersection(const PixelRange& other) const;
+  PixelRange hull(const PixelRange& other) const;
+  bool operator==(const PixelRange&) const = default;
 };
 
 // Where a window of the fine drawing grid lies: pixel (u, v) has its centre at
@@ -44,7 +44,9 @@ class Figure {
          const CameraModel& camera);
 
   bool visible() const { return visible_; }
-  const Box& box() const { return box_; }  // pixels that it touches; may reach outside of the image
+  const PixelRange& box() const {
+    return box_;
+  }  // pixels that it touches; may reach outside of the image
   float base_light() const { return base_.light; }
 
   // Adds the base's coverage to `base` and the print's light, relative to the base's, to `print`.
@@ -91,7 +93,7 @@ class Figure {
   double facing_ = 1;        // -1 when seen from behind: outlines run the other way
   double pixels_per_m_ = 0;  // an upper bound of the magnification
   int instants_ = 1;         // that stand for the exposure
-  Box box_;
+  PixelRange box_;
 };
 
 }  // namespace roundel

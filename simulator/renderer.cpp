@@ -52,17 +52,17 @@ struct Renderer::Impl {
 
   void collect(const Scene& scene);
   void find_changes();
-  void note(const Box& box);
-  void compose(const Box& box);
-  void compose_tile(const Box& tile);
-  void paint(const Figure& figure, const Box& area);
-  Box reach(const Figure& figure) const {
+  void note(const PixelRange& box);
+  void compose(const PixelRange& box);
+  void compose_tile(const PixelRange& tile);
+  void paint(const Figure& figure, const PixelRange& area);
+  PixelRange reach(const Figure& figure) const {
     return figure.box().grown(optics.margin()).intersection(image);
   }
 
   CameraModel camera;
   Imaging imaging;
-  Box image;
+  PixelRange image;
   Response response;
   Optics optics;
   Light light;
@@ -71,7 +71,7 @@ struct Renderer::Impl {
   std::vector<Figure> figures, drawn;  // of this frame; of the one in `grey`
   bool first = true;
   std::vector<std::int16_t> grey;  // the picture without noise, in Response's fixed point
-  std::vector<Box> changes;
+  std::vector<PixelRange> changes;
 
   std::vector<float> fine, pixels;  // of one tile
   CoverageGrid base, print;
@@ -96,7 +96,7 @@ void Renderer::render(const Scene& scene, std::uint64_t noise_seed, GreyImage& o
   Impl& self = *impl_;
   self.collect(scene);
   self.find_changes();
-  for (const Box& box : self.changes) self.compose(box);
+  for (const PixelRange& box : self.changes) self.compose(box);
   std::swap(self.figures, self.drawn);
   self.first = false;
 
@@ -126,7 +126,7 @@ void Renderer::Impl::find_changes() {
   for (std::size_t i = 0; i < count; ++i) {
     const bool now = i < figures.size(), before = i < drawn.size();
     if (now && before && figures[i] == drawn[i]) continue;
-    Box old_box, new_box;
+    PixelRange old_box, new_box;
     if (before && drawn[i].visible()) old_box = reach(drawn[i]);
     if (now && figures[i].visible()) new_box = reach(figures[i]);
     if (!old_box.empty() && !new_box.empty() && !old_box.intersection(new_box).empty()) {
@@ -139,11 +139,11 @@ void Renderer::Impl::find_changes() {
 }
 
 // Joins a change with one noted before where that saves work; overlaps that stay are drawn twice.
-void Renderer::Impl::note(const Box& box) {
+void Renderer::Impl::note(const PixelRange& box) {
   if (box.empty()) return;
-  const auto area = [](const Box& b) { return static_cast<double>(b.width()) * b.height(); };
-  for (Box& other : changes) {
-    const Box joined = other.hull(box);
+  const auto area = [](const PixelRange& b) { return static_cast<double>(b.width()) * b.height(); };
+  for (PixelRange& other : changes) {
+    const PixelRange joined = other.hull(box);
     if (area(joined) <= area(other) + area(box)) {
       other = joined;
       return;
@@ -152,16 +152,16 @@ void Renderer::Impl::note(const Box& box) {
   changes.push_back(box);
 }
 
-void Renderer::Impl::compose(const Box& box) {
+void Renderer::Impl::compose(const PixelRange& box) {
   for (int top = box.top; top < box.bottom; top += kTile) {
     for (int left = box.left; left < box.right; left += kTile) {
-      compose_tile(Box{left, top, left + kTile, top + kTile}.intersection(box));
+      compose_tile(PixelRange{left, top, left + kTile, top + kTile}.intersection(box));
     }
   }
 }
 
-void Renderer::Impl::compose_tile(const Box& tile) {
-  const Box area = tile.grown(optics.margin());  // the scene that the tile's pixels see
+void Renderer::Impl::compose_tile(const PixelRange& tile) {
+  const PixelRange area = tile.grown(optics.margin());  // the scene that the tile's pixels see
   const int factor = optics.factor();
   fine.assign(static_cast<std::size_t>(area.width() * factor) *
                   static_cast<std::size_t>(area.height() * factor),
@@ -178,9 +178,9 @@ void Renderer::Impl::compose_tile(const Box& tile) {
   }
 }
 
-void Renderer::Impl::paint(const Figure& figure, const Box& area) {
+void Renderer::Impl::paint(const Figure& figure, const PixelRange& area) {
   const int factor = optics.factor();
-  const Box window = figure.box().intersection(area);
+  const PixelRange window = figure.box().intersection(area);
   const int width = window.width() * factor, height = window.height() * factor;
   base.reset(width, height);
   print.reset(width, height);

@@ -189,8 +189,11 @@ KernelCase kernel_case(int halves, double low, double high) {
   c.model.shift = 0.1F;
   c.model.inner = halves > 0 ? static_cast<float>(kCodeInnerRatio) : 0.45F;
   c.model.halves = halves;
-  for (int k = 0; k < halves; ++k) {
-    c.model.colours[static_cast<std::size_t>(k)] = (k * k / 3) % 2 ? 1.0F : 0.0F;
+  const auto bright = [](int k) { return (k * k / 3) % 2 != 0 ? 1U : 0U; };
+  for (int neighbour = 0; neighbour < 5; ++neighbour) {
+    std::uint32_t word = 0;
+    for (int k = 0; k < halves; ++k) word |= bright((k + neighbour - 2 + halves) % halves) << k;
+    c.model.colours[static_cast<std::size_t>(neighbour)] = static_cast<std::int32_t>(word);
   }
   c.model.robust_scale = c.model.outlier = 1e9F;
   Random random(34);

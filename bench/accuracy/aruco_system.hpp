@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "bench/accuracy/contender.hpp"
+
+namespace roundel::bench {
+
+// ArUco 4x4 (Debian's OpenCV), with and without sub-pixel corners, pose by IPPE_SQUARE.
+std::vector<Contender> aruco_contenders();
+
+}  // namespace roundel::bench

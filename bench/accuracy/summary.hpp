@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/accuracy/contender.hpp"
+
+namespace roundel::bench {
+
+struct Distribution {
+  double mean = 0, median = 0, p99 = 0, worst = 0;
+};
+
+// NaN for no values.
+Distribution distribution_of(std::vector<double> values);
+
+// What one system did in one experiment. Shares are of the judged markers, flips of the found ones.
+struct Summary {
+  std::string experiment, system;
+  bool has_yaw = true, has_sigma = false;
+  int judged = 0, found = 0, unread = 0, wrong_ids = 0, missed = 0, flips = 0;
+  int extra = 0, extra_ids = 0;           // see Verdicts
+  Distribution position_mm, phi, normal;  // of the found markers; radians
+
+  // Honesty of the published sigmas, flips left out: the mean over found markers and axes of
+  // (error / sigma)^2, 1 when honest; and the sigmas' own size.
+  double position_honesty = 0, rotation_honesty = 0;
+  double mean_sigma_mm = 0;  // of the position: square root of the axes' summed variances
+
+  // Against the Cramer-Rao bound, over the views for which it is known, flips left out: root mean
+  // squares of the position error and of its bound, and their squared quotient; medians of phi and
+  // of half the rotation's bound.
+  double position_rms_mm = 0, bound_rms_mm = 0, efficiency = 0;
+  double bound_phi_median = 0;
+
+  double found_share() const { return judged > 0 ? static_cast<double>(found) / judged : 0; }
+  double flip_share() const { return found > 0 ? static_cast<double>(flips) / found : 0; }
+};
+
+Summary summarise(const Result& result);
+
+}  // namespace roundel::bench
