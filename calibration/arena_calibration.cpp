@@ -24,7 +24,8 @@ bool same_lens(const CameraModel& a, const CameraModel& b) {
 }  // namespace
 
 std::string mismatch(const ArenaCamera& calibrated, const ArenaCamera& now) {
-  if (calibrated.identity != now.identity) {
+  const bool known = !now.identity.empty();
+  if (known && calibrated.identity != now.identity) {
     return fmt::format("it belongs to the camera \"{}\", this is \"{}\"", calibrated.identity,
                        now.identity);
   }
@@ -33,7 +34,7 @@ std::string mismatch(const ArenaCamera& calibrated, const ArenaCamera& now) {
     return fmt::format("it was made at {}x{} pixels, this is {}x{}", then.width, then.height,
                        here.width, here.height);
   }
-  if (calibrated.crop != now.crop) {
+  if (known && calibrated.crop != now.crop) {
     const auto named = [](const std::string& crop) { return crop.empty() ? "all" : crop; };
     return fmt::format("it was made with another part of the sensor ({}, now {})",
                        named(calibrated.crop), named(now.crop));

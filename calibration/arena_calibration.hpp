@@ -38,7 +38,7 @@ struct ArenaRequest {
 
 // The camera that a calibration belongs to.
 struct ArenaCamera {
-  std::string identity;    // as its source names it
+  std::string identity;    // as its source names it; empty: unknown
   std::string crop;        // part of the sensor that the frames show; empty: all
   CameraModel intrinsics;  // with the resolution
 };
@@ -66,7 +66,8 @@ struct ArenaCalibration {
   std::string version;  // of the program
 };
 
-// Whether a calibration may be used with a camera: empty if so, else why not, as a clause.
+// Whether a calibration may be used with a camera: empty if so, else why not, as a clause. Where it
+// is not known which camera took the frames (identity empty), resolution and lens must do.
 std::string mismatch(const ArenaCamera& calibrated, const ArenaCamera& now);
 
 }  // namespace roundel

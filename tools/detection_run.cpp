@@ -8,11 +8,11 @@
 #include <string>
 
 #include "calibration/camera_file.hpp"
+#include "daemon/draw_markers.hpp"
+#include "daemon/json_frame.hpp"
 #include "tools/commands.hpp"
-#include "tools/draw_markers.hpp"
 #include "tools/frame_input.hpp"
 #include "tools/frame_text.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {

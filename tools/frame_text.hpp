@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/marker.hpp"
-#include "tools/json_frame.hpp"
+#include "daemon/json_frame.hpp"
 
 namespace roundel {
 

@@ -11,9 +11,9 @@
 #include <memory>
 #include <optional>
 
+#include "daemon/json_frame.hpp"
 #include "daemon/signal_descriptor.hpp"
 #include "tools/commands.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/pose_table.hpp"
 #include "transport/lcm_url.hpp"
 #include "transport/subscriber.hpp"

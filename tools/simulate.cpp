@@ -13,11 +13,11 @@
 #include "core/necklace.hpp"
 #include "daemon/file_pointer.hpp"
 #include "daemon/image_file.hpp"
+#include "daemon/json_frame.hpp"
 #include "simulator/arena.hpp"
 #include "tools/commands.hpp"
 #include "tools/frame_output.hpp"
 #include "tools/id_list.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/json_truth.hpp"
 
 namespace roundel {
