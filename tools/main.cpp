@@ -50,6 +50,10 @@ int run(int argc, char** argv) {
   roundel::add_compare(app);
   roundel::add_markers(app);
   roundel::add_listen(app);
+  roundel::add_calibrate(app);
+  roundel::add_status(app);
+  roundel::add_reload(app);
+  roundel::add_snapshot(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
