@@ -69,7 +69,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(const Json& run) {
-    const std::string missing = string_field(run, "text");
+    constexpr std::size_t kColumns = 60;
+    const std::string missing = string_field(run, "text").substr(0, kColumns);
     if (terminal_) {
       fmt::print(stderr, "\r\x1b[K{:.0f} frames, {:.0f} s: {}", number_field(run, "frames"),
                  number_field(run, "elapsed_s"), missing);

@@ -9,6 +9,7 @@
 namespace roundel {
 
 // A frame for human eyes: one line a marker, each with its end; one line where there is none.
-std::string frame_text(const FrameInfo& info, std::span<const Marker> markers);
+std::string frame_text(const FrameInfo& info, std::span<const Marker> markers,
+                       std::span<const ArenaPose> arena = {});
 
 }  // namespace roundel

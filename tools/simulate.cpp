@@ -148,6 +148,10 @@ void add_arena_options(CLI::App& command, SimulateOptions& options) {
                    "Robots pass each other within millimetres");
   command.add_option("--length", arena.length_m, "Of the arena, metres")->capture_default_str();
   command.add_option("--breadth", arena.width_m, "Of the arena, metres")->capture_default_str();
+  command.add_option("--min-height", arena.min_height_m, "Of the robots' markers, metres")
+      ->capture_default_str();
+  command.add_option("--max-height", arena.max_height_m, "Of the robots' markers, metres")
+      ->capture_default_str();
   command.add_option("--speed", arena.max_speed, "Of the robots, at most, m/s")
       ->capture_default_str();
 }
