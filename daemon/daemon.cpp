@@ -27,6 +27,35 @@ void copy(const LumaView& from, GreyImage& to) {
   }
 }
 
+// The keys that a source is made from; beginnings of them.
+std::initializer_list<std::string_view> source_sections(SourceKind kind) {
+  // Robots wear the markers of the configuration.
+  static const std::initializer_list<std::string_view> simulator = {
+      "simulator.", "marker.diameter", "marker.bits", "marker.hamming", "camera.calibration"};
+  static const std::initializer_list<std::string_view> files = {"files."};
+  static const std::initializer_list<std::string_view> camera = {
+      "camera.device",     "camera.match_", "camera.format",  "camera.width",  "camera.height",
+      "camera.frame_rate", "camera.crop_",  "camera.buffers", "camera.timeout"};
+  switch (kind) {
+    case SourceKind::kSimulator:
+      return simulator;
+    case SourceKind::kFiles:
+      return files;
+    case SourceKind::kCamera:
+      return camera;
+  }
+  return {};
+}
+
+// Of a camera that runs on.
+void set_controls(const FrameSource& source, const Configuration& values) {
+  const std::shared_ptr<CameraControls> controls = source.controls();
+  if (controls == nullptr) return;
+  for (const std::string& remark : controls->replace(values.camera.controls)) {
+    log_warning("camera.controls: {}", remark);
+  }
+}
+
 }  // namespace
 
 Daemon::Daemon(Load load, SignalDescriptor& signals)
@@ -55,6 +84,9 @@ int Daemon::run() {
     if (wakeup.frame && !carry_frame()) break;
   }
   publish_status();
+  if (const std::string drops = parts_.source->explanation_of_drops(); !drops.empty()) {
+    log_info("{} frames tracked; {}", statistics_.frames(), drops);
+  }
   if (parts_.source->complete()) {
     log_info("ends");
     return 0;
@@ -78,7 +110,7 @@ Daemon::Wakeup Daemon::wait() {
 // The way of a frame: take the newest, track, give back, publish.
 bool Daemon::carry_frame() {
   std::optional<FrameLease> lease = parts_.source->next();
-  information_.camera = parts_.source->state();
+  if (parts_.source->state() != information_.camera) take_state();
   if (!lease) return information_.camera != CameraState::kEnded;
   const CapturedFrame frame = lease->frame();
   FrameTimes times;
@@ -116,6 +148,19 @@ void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const Are
   snapshot.arena.assign(arena.begin(), arena.end());
   snapshot.context = arena_.context();
   control_.offer_snapshot();
+}
+
+// Subscribers hear of a lost camera at once. What was tracked before it was lost is not expected
+// where it was.
+void Daemon::take_state() {
+  const CameraState before = information_.camera;
+  information_.camera = parts_.source->state();
+  status_.source = parts_.source->description();
+  if (before == CameraState::kLost) {
+    parts_.tracker->reset();
+    fit_arena();
+  }
+  if (information_.camera == CameraState::kLost || before == CameraState::kLost) publish_status();
 }
 
 // A calibration holds for one resolution: frames of another one get no poses.
@@ -187,7 +232,7 @@ void Daemon::set_arena_moved(bool moved) {
 }
 
 std::shared_ptr<CameraControls> Daemon::camera_controls() {
-  return nullptr;
+  return parts_.source->controls();
 }
 
 void Daemon::publish_status() {
@@ -279,12 +324,7 @@ std::string Daemon::reload() {
     const Configuration& values = next.configuration.values;
     // How robots wear their markers is another matter.
     const bool other_markers = touches({"marker.diameter", "marker.bits", "marker.hamming"});
-    const bool simulator = values.source == SourceKind::kSimulator;
-    // Robots wear the markers of the configuration.
-    const bool new_source =
-        touches({"source"}) ||
-        (simulator ? touches({"simulator.", "camera.calibration"}) || other_markers
-                   : touches({"files."}));
+    const bool new_source = touches({"source"}) || touches(source_sections(values.source));
     if (new_source) next.source = make_source(next.configuration);
     next.camera = make_camera(next.configuration, next.source ? *next.source : *parts_.source);
     const bool new_camera = !same_camera(next.camera, parts_.camera);
@@ -301,6 +341,7 @@ std::string Daemon::reload() {
                                          ? std::string("the calibration")
                                          : fmt::format("{}", fmt::join(changed, ", ")));
     if (!next.source) next.source = std::move(parts_.source);
+    if (!new_source && touches({"camera.controls"})) set_controls(*next.source, values);
     if (!next.tracker) next.tracker = std::move(parts_.tracker);
     if (!next.broadcast) next.broadcast = std::move(parts_.broadcast);
     start(std::move(next));

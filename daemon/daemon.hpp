@@ -53,6 +53,7 @@ class Daemon final : private LoopControl {
   };
   Wakeup wait();
   bool carry_frame();  // false at the end of the source
+  void take_state();
   void fit_tracker(int width, int height);
   void load_arena_file();
   void fit_arena();

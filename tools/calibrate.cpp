@@ -9,6 +9,7 @@ void add_calibrate(CLI::App& app) {
   command->require_subcommand(1);
   add_calibrate_arena(*command);
   add_calibrate_restore(*command);
+  add_calibrate_camera(*command);
 }
 
 }  // namespace roundel

@@ -7,5 +7,6 @@ namespace roundel {
 
 void add_calibrate_arena(CLI::App& calibrate);
 void add_calibrate_restore(CLI::App& calibrate);
+void add_calibrate_camera(CLI::App& calibrate);
 
 }  // namespace roundel

@@ -88,7 +88,6 @@ void ArenaService::on_frame(const FrameSnapshot& frame) {
   }
   context_ = frame.context;
   if (calibrator_) calibrator_->add(frame.markers);
-  advance(frame.information.captured.mono_us);
   watch(frame);
 }
 
@@ -158,7 +157,7 @@ void ArenaService::watch(const FrameSnapshot& frame) {
     watch_state_ = state;
     loop_.post([moved](LoopControl& loop) { loop.set_arena_moved(moved); });
   }
-  const std::int64_t now_us = frame.information.captured.mono_us;
+  const std::int64_t now_us = now().mono_us;
   if (state == ArenaWatch::State::kCameraMoved && context.recalibrate && !calibrator_ &&
       now_us >= retry_us_) {
     retry_us_ = now_us + kRetryUs;

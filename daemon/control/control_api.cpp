@@ -6,6 +6,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
+#include "daemon/control/controls_json.hpp"
 #include "daemon/control/snapshot_picture.hpp"
 #include "daemon/control/state_json.hpp"
 
@@ -131,12 +132,35 @@ HttpResponse ControlApi::picture(const HttpRequest& request) {
   return response;
 }
 
-HttpResponse ControlApi::controls(const HttpRequest& /*request*/) {
-  return json_answer(kOk, {{"controls", Json::array()}});
+std::shared_ptr<CameraControls> ControlApi::camera_controls() {
+  return on_loop(loop_, [](LoopControl& control) { return control.camera_controls(); });
 }
 
-HttpResponse ControlApi::set_controls(const HttpRequest& /*request*/) {
-  return error_answer(kConflict, "the source of frames has no controls");
+HttpResponse ControlApi::controls(const HttpRequest& /*request*/) {
+  Json list = Json::array();
+  if (const auto controls = camera_controls()) {
+    for (const Control& control : controls->list()) list.push_back(control_json(control));
+  }
+  return json_answer(kOk, {{"controls", std::move(list)}});
+}
+
+// Answers with the controls that were set, as they were read back.
+HttpResponse ControlApi::set_controls(const HttpRequest& request) {
+  const auto controls = camera_controls();
+  if (!controls) return error_answer(kConflict, "the source of frames has no controls");
+  try {
+    Json list = Json::array();
+    for (const auto& [name, value] : control_values_from_json(Json::parse(request.body))) {
+      list.push_back(control_json(controls->set(name, value)));
+    }
+    return json_answer(kOk, {{"controls", std::move(list)}});
+  } catch (const Json::parse_error&) {
+    return error_answer(kBad, "the request is not valid JSON");
+  } catch (const CameraError& error) {
+    return error_answer(kConflict, error.what());
+  } catch (const std::exception& error) {
+    return error_answer(kBad, error.what());
+  }
 }
 
 HttpResponse ControlApi::calibration_answer(int status) const {

@@ -30,6 +30,7 @@ class ControlApi {
   HttpResponse forget_arena(const HttpRequest& request);
   HttpResponse reload(const HttpRequest& request);
   HttpResponse calibration_answer(int status) const;
+  std::shared_ptr<CameraControls> camera_controls();
 
   SharedView& view_;
   ArenaService& arena_;

@@ -20,9 +20,7 @@ constexpr int kNiceness = 10;
 }  // namespace
 
 ControlCenter::ControlCenter()
-    : arena_(commands_), api_(view_, arena_, commands_), thread_([this] { run(); }) {
-  served_.socket.clear();
-}
+    : arena_(commands_), api_(view_, arena_, commands_), thread_([this] { run(); }) {}
 
 ControlCenter::~ControlCenter() {
   {
@@ -84,7 +82,14 @@ void ControlCenter::take_news() {
   if (const status_t* status = statuses_.take()) view_.show(*status);
   const FrameSnapshot* const frame = frames_.take();
   if (frame == nullptr) return;
-  auto shown = std::make_shared<const FrameSnapshot>(*frame);
+  auto shown = std::make_shared<FrameSnapshot>();
+  shown->information = frame->information;
+  shown->markers = frame->markers;
+  shown->arena = frame->arena;
+  shown->context = frame->context;
+  shown->has_picture = frame->has_picture;
+  // Slots keep the memory of old pictures.
+  if (frame->has_picture) shown->picture = frame->picture;
   arena_.on_frame(*shown);
   if (server_ && server_->has_event_streams()) {
     auto text = std::make_shared<const std::string>(

@@ -66,7 +66,7 @@ class ControlCenter {
 
   // Of the thread.
   std::uint64_t frames_seen_ = 0;
-  ControlSettings served_;
+  ControlSettings served_{"", ""};
   std::optional<ControlSocket> socket_;
   std::optional<HttpServer> server_;
   std::thread thread_;
