@@ -1,4 +1,4 @@
-#include "tools/json_frame.hpp"
+#include "daemon/json_frame.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/json_fields.hpp"
+#include "daemon/json_fields.hpp"
 
 #include <fmt/format.h>
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/arena_pose.hpp"
 #include "core/marker.hpp"
 
 namespace roundel {
@@ -22,10 +23,12 @@ struct FrameInfo {
 nlohmann::ordered_json vector_json(const Eigen::Vector3d& v);         // [x, y, z]
 nlohmann::ordered_json quaternion_json(const Eigen::Quaterniond& q);  // [w, x, y, z]
 
-// Without a pose, everything that needs one is left out.
-nlohmann::ordered_json marker_json(const Marker& marker);
+// Without a pose, everything that needs one is left out; without a place in the arena, that.
+nlohmann::ordered_json marker_json(const Marker& marker, const ArenaPose& arena = {});
 
-nlohmann::ordered_json frame_json(const FrameInfo& info, std::span<const Marker> markers);
+// `arena` has one entry a marker, or none at all.
+nlohmann::ordered_json frame_json(const FrameInfo& info, std::span<const Marker> markers,
+                                  std::span<const ArenaPose> arena = {});
 
 // What a program that reads the JSON of a frame gets out of it.
 struct ReportedFrame {

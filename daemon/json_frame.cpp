@@ -1,11 +1,11 @@
-#include "tools/json_frame.hpp"
+#include "daemon/json_frame.hpp"
 
 #include <fmt/format.h>
 
 #include <limits>
 #include <stdexcept>
 
-#include "tools/json_fields.hpp"
+#include "daemon/json_fields.hpp"
 
 namespace roundel {
 
@@ -49,7 +49,7 @@ Json quaternion_json(const Eigen::Quaterniond& q) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-Json marker_json(const Marker& marker) {
+Json marker_json(const Marker& marker, const ArenaPose& arena) {
   Json json = {
       {"id", marker.id},
       {"id_probability", marker.id_probability},
@@ -71,13 +71,24 @@ Json marker_json(const Marker& marker) {
     json["alternative"] = {{"position", vector_json(marker.alternative.position)},
                            {"orientation", quaternion_json(marker.alternative.orientation)}};
   }
+  if (arena.valid) {
+    const Eigen::Vector3d& p = arena.position;
+    json["arena"] = {
+        {"x", p.x()},
+        {"y", p.y()},
+        {"z", p.z()},
+        {"heading", arena.heading},
+        {"sigma",
+         {{"position", vector_json(arena.sigma_position)}, {"heading", arena.sigma_heading}}}};
+  }
   return json;
 }
 
-Json frame_json(const FrameInfo& info, std::span<const Marker> markers) {
+Json frame_json(const FrameInfo& info, std::span<const Marker> markers,
+                std::span<const ArenaPose> arena) {
   Json list = Json::array();
-  for (const Marker& marker : markers) {
-    list.push_back(marker_json(marker));
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    list.push_back(marker_json(markers[i], arena.empty() ? ArenaPose() : arena[i]));
   }
   return {{"source", info.source},
           {"frame", info.frame},

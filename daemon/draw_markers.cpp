@@ -1,12 +1,10 @@
-#include "tools/draw_markers.hpp"
+#include "daemon/draw_markers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
-
-#include "tools/cairo_pointer.hpp"
 
 namespace roundel {
 namespace {
@@ -69,23 +67,6 @@ void draw_id(cairo_t* context, const Marker& marker, double size) {
   cairo_fill(context);
 }
 
-CairoSurface grey_surface(const LumaView& frame) {
-  CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, frame.width, frame.height));
-  unsigned char* data = cairo_image_surface_get_data(surface.get());
-  if (data == nullptr) {
-    throw std::runtime_error(
-        fmt::format("no picture of {}x{} can be made", frame.width, frame.height));
-  }
-  const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface.get());
-  for (int v = 0; v < frame.height; ++v) {
-    for (int u = 0; u < frame.width; ++u) {
-      std::fill_n(data + v * stride + 4 * u, 4, frame.at(u, v));
-    }
-  }
-  cairo_surface_mark_dirty(surface.get());
-  return surface;
-}
-
 }  // namespace
 
 void draw_found_markers(cairo_t* context, std::span<const Marker> markers,
@@ -103,6 +84,23 @@ void draw_found_markers(cairo_t* context, std::span<const Marker> markers,
     draw_id(context, marker, std::clamp(marker.ellipse.a * 0.7, 11.0, 40.0));
   }
   cairo_restore(context);
+}
+
+CairoSurface grey_surface(const LumaView& frame) {
+  CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, frame.width, frame.height));
+  unsigned char* data = cairo_image_surface_get_data(surface.get());
+  if (data == nullptr) {
+    throw std::runtime_error(
+        fmt::format("no picture of {}x{} can be made", frame.width, frame.height));
+  }
+  const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface.get());
+  for (int v = 0; v < frame.height; ++v) {
+    for (int u = 0; u < frame.width; ++u) {
+      std::fill_n(data + v * stride + 4 * u, 4, frame.at(u, v));
+    }
+  }
+  cairo_surface_mark_dirty(surface.get());
+  return surface;
 }
 
 void save_annotated_png(const std::string& path, const LumaView& frame,

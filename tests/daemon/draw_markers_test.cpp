@@ -1,4 +1,4 @@
-#include "tools/draw_markers.hpp"
+#include "daemon/draw_markers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "core/grey_image.hpp"
+#include "daemon/cairo_pointer.hpp"
 #include "tests/temporary_directory.hpp"
-#include "tools/cairo_pointer.hpp"
 
 namespace roundel {
 namespace {
