@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/accuracy/placement.hpp"
+#include "bench/common/placement.hpp"
 
 namespace roundel::bench {
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "bench/accuracy/experiment.hpp"
-#include "bench/accuracy/system.hpp"
+#include "bench/common/experiment.hpp"
+#include "bench/common/system.hpp"
 
 namespace roundel::bench {
 

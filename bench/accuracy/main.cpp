@@ -11,10 +11,10 @@
 #include <iterator>
 #include <thread>
 
-#include "bench/accuracy/contender.hpp"
-#include "bench/accuracy/experiments.hpp"
+#include "bench/accuracy/paper_experiments.hpp"
 #include "bench/accuracy/rank_tests.hpp"
 #include "bench/accuracy/report.hpp"
+#include "bench/accuracy/run.hpp"
 
 namespace roundel::bench {
 namespace {

@@ -1,6 +1,8 @@
+#include "bench/accuracy/paper_experiments.hpp"
+
 #include <algorithm>
 
-#include "bench/accuracy/experiments.hpp"
+#include "bench/common/arena.hpp"
 
 namespace roundel::bench {
 

@@ -1,4 +1,4 @@
-#include "bench/accuracy/placement.hpp"
+#include "bench/common/placement.hpp"
 
 #include <algorithm>
 #include <cmath>

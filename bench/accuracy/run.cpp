@@ -1,14 +1,10 @@
-#include "bench/accuracy/contender.hpp"
+#include "bench/accuracy/run.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
-#include "bench/accuracy/apriltag_system.hpp"
-#include "bench/accuracy/aruco_system.hpp"
 #include "bench/accuracy/bound.hpp"
-#include "bench/accuracy/painter.hpp"
-#include "bench/accuracy/roundel_system.hpp"
+#include "bench/common/painter.hpp"
 
 namespace roundel::bench {
 
@@ -37,24 +33,6 @@ void add_bounds(const Experiment& experiment, const Print& print, int bounds,
 }
 
 }  // namespace
-
-std::vector<Contender> all_contenders() {
-  std::vector<Contender> all = {
-      {"roundel", whycode_print,
-       [](const Experiment& experiment) { return roundel_systems(experiment, true); }},
-      {"roundel-whycon", whycon_print,
-       [](const Experiment& experiment) { return roundel_systems(experiment, false); }}};
-  [[maybe_unused]] const auto add = [&](std::vector<Contender> some) {
-    std::move(some.begin(), some.end(), std::back_inserter(all));
-  };
-#ifdef ROUNDEL_BENCH_APRILTAG
-  add(apriltag_contenders());
-#endif
-#ifdef ROUNDEL_BENCH_ARUCO
-  add(aruco_contenders());
-#endif
-  return all;
-}
 
 std::vector<Result> run(const Experiment& experiment, const Contender& contender, int bounds) {
   const Print print = contender.print(experiment);

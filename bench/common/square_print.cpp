@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "bench/accuracy/print.hpp"
+#include "bench/common/print.hpp"
 #include "simulator/pattern.hpp"
 
 namespace roundel::bench {

@@ -1,24 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "bench/accuracy/judge.hpp"
-#include "bench/accuracy/print.hpp"
-#include "bench/accuracy/system.hpp"
+#include "bench/common/contender.hpp"
 
 namespace roundel::bench {
-
-// A kind of print and the systems that read it: they are shown the same pictures.
-struct Contender {
-  std::string name;
-  std::function<Print(const Experiment&)> print;
-  std::function<Systems(const Experiment&)> systems;
-};
-
-// Every contender that was built in; Roundel's are first.
-std::vector<Contender> all_contenders();
 
 struct Result {
   const Experiment* experiment = nullptr;

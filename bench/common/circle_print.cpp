@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "bench/accuracy/print.hpp"
+#include "bench/common/print.hpp"
 #include "core/necklace.hpp"
 
 namespace roundel::bench {
@@ -26,15 +26,13 @@ Drawing drawing_of(SceneMarker marker, const PlacedMarker& placed, const Experim
 Print whycode_print(const Experiment& experiment) {
   std::vector<std::uint32_t> words;
   const NecklaceCode code(experiment.bits, 1);
-  for (int number = 0; number < experiment.markers; ++number) {
-    words.push_back(code.word(number + 1).value());
-  }
+  for (int id = 1; id <= code.id_count(); ++id) words.push_back(code.word(id).value());
   return [&experiment, words](const Imaging& imaging, const Response& response,
                               const PlacedMarker& placed) {
     SceneMarker marker;
     marker.kind = MarkerKind::WhyCode;
     marker.bits = experiment.bits;
-    marker.word = words[static_cast<std::size_t>(placed.number)];
+    marker.word = words[static_cast<std::size_t>(placed.number) % words.size()];
     return drawing_of(marker, placed, experiment, imaging, response);
   };
 }

@@ -1,4 +1,4 @@
-#include "bench/accuracy/roundel_system.hpp"
+#include "bench/common/roundel_system.hpp"
 
 #include "core/detector.hpp"
 #include "core/necklace.hpp"
@@ -79,15 +79,22 @@ class RoundelTracker final : public RoundelSystem {
   Tracker tracker_;
 };
 
-}  // namespace
-
-Systems roundel_systems(const Experiment& experiment, bool with_code) {
+Systems systems_for(const Experiment& experiment, bool with_code) {
   Systems systems;
   systems.push_back(std::make_unique<RoundelDetector>(experiment, with_code));
   if (experiment.continuous) {
     systems.push_back(std::make_unique<RoundelTracker>(experiment, with_code));
   }
   return systems;
+}
+
+}  // namespace
+
+std::vector<Contender> roundel_contenders() {
+  return {{"roundel", whycode_print,
+           [](const Experiment& experiment) { return systems_for(experiment, true); }},
+          {"roundel-whycon", whycon_print,
+           [](const Experiment& experiment) { return systems_for(experiment, false); }}};
 }
 
 }  // namespace roundel::bench

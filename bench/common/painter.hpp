@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/accuracy/composer.hpp"
+#include "bench/common/composer.hpp"
 #include "core/grey_image.hpp"
 #include "simulator/noise.hpp"
 

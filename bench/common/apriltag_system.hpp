@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "bench/accuracy/contender.hpp"
+#include "bench/common/contender.hpp"
 
 namespace roundel::bench {
 

@@ -1,4 +1,4 @@
-#include "simulator/arena.hpp"
+#include "bench/common/arena.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "bench/accuracy/experiments.hpp"
 #include "simulator/arena_camera.hpp"
 #include "simulator/clutter.hpp"
 #include "simulator/random.hpp"
@@ -27,6 +26,14 @@ enum Stream : std::uint64_t { kMotion, kHeights, kClutter, kNoise };
 
 ArenaOptions arena_options(const Experiment& experiment, const ArenaSetting& setting) {
   ArenaOptions options;
+  options.image_width = setting.width;
+  options.image_height = setting.height;
+  options.length_m = setting.length_m;
+  options.width_m = setting.width_m;
+  options.imaging.noise_sigma = setting.noise_sigma;
+  options.imaging.blur_px = setting.blur_px;
+  options.imaging.srgb = setting.srgb;
+  options.imaging.exposure_s = setting.exposure;
   options.robots = setting.robots;
   options.bits = setting.bits;
   options.corners = false;
@@ -63,6 +70,7 @@ Experiment arena(std::string name, std::string title, const ArenaSetting& settin
   experiment.name = std::move(name);
   experiment.title = std::move(title);
   experiment.markers = setting.robots;
+  experiment.diameter_m = setting.diameter_m;
   experiment.bits = setting.bits;
   experiment.continuous = true;
 
@@ -70,10 +78,10 @@ Experiment arena(std::string name, std::string title, const ArenaSetting& settin
   const Pose arena_in_camera = arena_in_ceiling_camera(options);
   experiment.camera = arena_camera(options, arena_in_camera);
   experiment.imaging = options.imaging;
-  experiment.imaging.srgb = setting.srgb;
-  if (setting.exposure > 0) experiment.imaging.exposure_s = setting.exposure;
-  experiment.clutter = arena_clutter(derived_seed(kSeed, kClutter), options.length_m,
-                                     options.width_m, arena_in_camera);
+  if (setting.clutter) {
+    experiment.clutter = arena_clutter(derived_seed(kSeed, kClutter), options.length_m,
+                                       options.width_m, arena_in_camera);
+  }
 
   const auto robots = static_cast<std::size_t>(setting.robots);
   Swarm swarm({.robots = setting.robots,

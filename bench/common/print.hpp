@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "bench/accuracy/experiment.hpp"
-#include "bench/accuracy/square_pattern.hpp"
+#include "bench/common/experiment.hpp"
+#include "bench/common/square_pattern.hpp"
 #include "simulator/coverage.hpp"
 #include "simulator/figure.hpp"
 #include "simulator/response.hpp"
@@ -23,7 +23,7 @@ struct Drawing {
 // (the experiment's, or one that differs from it a little) and its response curve.
 using Print = std::function<Drawing(const Imaging&, const Response&, const PlacedMarker&)>;
 
-// These borrow the experiment. Marker i wears the i-th code; for square tags the (i % count)-th.
+// These borrow the experiment. Of so many codes as a kind has, marker i wears number i % count.
 Print whycode_print(const Experiment& experiment);
 Print whycon_print(const Experiment& experiment);
 Print square_print(const Experiment& experiment, std::vector<SquarePattern> patterns);

@@ -1,4 +1,4 @@
-#include "bench/accuracy/aruco_system.hpp"
+#include "bench/common/aruco_system.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "bench/accuracy/print.hpp"
+#include "bench/common/print.hpp"
 #include "simulator/optics.hpp"
 
 namespace roundel::bench {

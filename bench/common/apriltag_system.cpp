@@ -1,4 +1,4 @@
-#include "bench/accuracy/apriltag_system.hpp"
+#include "bench/common/apriltag_system.hpp"
 
 extern "C" {
 #include <apriltag/apriltag.h>

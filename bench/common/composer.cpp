@@ -1,4 +1,4 @@
-#include "bench/accuracy/composer.hpp"
+#include "bench/common/composer.hpp"
 
 #include <memory>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/accuracy/experiment.hpp"
+#include "bench/common/experiment.hpp"
 #include "core/luma_view.hpp"
 
 namespace roundel::bench {
