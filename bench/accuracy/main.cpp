@@ -15,6 +15,7 @@
 #include "bench/accuracy/rank_tests.hpp"
 #include "bench/accuracy/report.hpp"
 #include "bench/accuracy/run.hpp"
+#include "bench/accuracy/targets.hpp"
 
 namespace roundel::bench {
 namespace {
@@ -100,6 +101,7 @@ void run_sets(const Options& options, const std::vector<Contender>& contenders) 
   write_summary_csv(csv, summaries, {});
   auto markdown = open(folder / "accuracy.md");
   write_markdown(markdown, experiments, summaries);
+  write_targets(markdown, summaries);
   auto rank_csv = open(folder / "rank_tests.csv");
   write_rank_tests(rank_csv, markdown, experiments, results);
 }

@@ -72,6 +72,7 @@ Experiment arena(std::string name, std::string title, const ArenaSetting& settin
   experiment.markers = setting.robots;
   experiment.diameter_m = setting.diameter_m;
   experiment.bits = setting.bits;
+  experiment.response_known = setting.response_known;
   experiment.continuous = true;
 
   const ArenaOptions options = arena_options(experiment, setting);

@@ -17,8 +17,9 @@ struct ArenaSetting {
   double width_m = 2;
   double noise_sigma = 3;  // grey levels
   double blur_px = 0.7;
-  bool clutter = true;      // on the floor
-  bool srgb = false;        // the camera encodes its pictures as sRGB
+  bool clutter = true;  // on the floor
+  bool srgb = false;    // the camera encodes its pictures as sRGB
+  bool response_known = false;
   double exposure = 0.005;  // seconds
   double speed = 0;         // every robot's, m/s; 0: as they happen to drive
 };

@@ -40,10 +40,11 @@ struct Experiment {
   CameraModel camera;
   Imaging imaging;
   double diameter_m = 0.084;
-  double plate_ratio = 1.35;  // white plate over marker
-  int markers = 1;            // PlacedMarker::number < markers
-  int bits = 8;               // of WhyCode markers: enough for as many ids
-  bool continuous = false;    // views follow each other as a camera would take them
+  double plate_ratio = 1.35;    // white plate over marker
+  int markers = 1;              // PlacedMarker::number < markers
+  int bits = 8;                 // of WhyCode markers: enough for as many ids
+  bool response_known = false;  // the camera's response curve is told to whoever can use it
+  bool continuous = false;      // views follow each other as a camera would take them
   std::vector<SceneShape> clutter;
   std::vector<View> views;
 };

@@ -33,6 +33,7 @@ class RoundelSystem : public System {
     sightings_.clear();
     for (const Marker& marker : markers) {
       sightings_.push_back({.number = marker.id > 0 ? marker.id - 1 : -1,
+                            .id_probability = marker.id_probability,
                             .u = marker.u,
                             .v = marker.v,
                             .pose = marker.pose,

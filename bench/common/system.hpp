@@ -12,9 +12,10 @@ namespace roundel::bench {
 
 // What a system says about one marker in one picture.
 struct Sighting {
-  int number = -1;      // of the id it read, from 0; -1: no id
-  double u = 0, v = 0;  // of the marker's centre, pixels
-  Pose pose;            // in DESIGN.md's frames, whatever the system's own are
+  int number = -1;            // of the id it read, from 0; -1: no id
+  double id_probability = 0;  // of systems that tell
+  double u = 0, v = 0;        // of the marker's centre, pixels
+  Pose pose;                  // in DESIGN.md's frames, whatever the system's own are
   bool has_sigma = false;
   Eigen::Vector3d sigma_position = Eigen::Vector3d::Zero();  // metres, camera axes
   Eigen::Vector3d sigma_rotation = Eigen::Vector3d::Zero();  // radians, about the camera axes
