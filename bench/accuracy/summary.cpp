@@ -1,21 +1,13 @@
 #include "bench/accuracy/summary.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <numeric>
 
 namespace roundel::bench {
 
 namespace {
 
 constexpr double kSteep = 75 * std::numbers::pi / 180;
-
-double mean_of(const std::vector<double>& values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 // Of records with sigmas.
 class Honesty {
@@ -51,18 +43,6 @@ class Honesty {
 };
 
 }  // namespace
-
-Distribution distribution_of(std::vector<double> values) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (values.empty()) return {kNone, kNone, kNone, kNone};
-  const double mean = mean_of(values);
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(
-        std::lround(share * static_cast<double>(values.size() - 1)))];
-  };
-  return {mean, at(0.5), at(0.99), values.back()};
-}
 
 Summary summarise(const Result& result) {
   Summary s;

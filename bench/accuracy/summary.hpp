@@ -5,15 +5,9 @@
 #include <vector>
 
 #include "bench/accuracy/run.hpp"
+#include "bench/common/distribution.hpp"
 
 namespace roundel::bench {
-
-struct Distribution {
-  double mean = 0, median = 0, p99 = 0, worst = 0;
-};
-
-// NaN for no values.
-Distribution distribution_of(std::vector<double> values);
 
 // What one system did in one experiment. Shares are of the judged markers, flips of the found ones.
 struct Summary {

@@ -13,15 +13,15 @@ extern "C" {
 #include <array>
 #include <cstdlib>
 #include <optional>
-#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace roundel::bench {
 
 namespace {
 
-// Settings that are fair (METHOD.md section 9, item 10): full resolution, one corrected bit, and a
-// decision margin without which 16h5 gives hundreds of false tags.
-constexpr float kDecimate = 1;
+// Settings that are fair (METHOD.md section 9, item 10): one corrected bit, and a decision margin
+// without which 16h5 gives hundreds of false tags.
 constexpr int kCorrectedBits = 1;
 constexpr float kMinDecisionMargin = 30;
 
@@ -79,13 +79,14 @@ Eigen::Matrix3d homography(const std::array<Eigen::Vector2d, 4>& from,
 
 class AprilTagSystem final : public System {
  public:
-  AprilTagSystem(const Experiment& experiment, const FamilyKind& kind)
+  AprilTagSystem(const Experiment& experiment, const FamilyKind& kind, std::string name,
+                 int decimate)
       : experiment_(experiment),
-        name_(kind.name),
+        name_(std::move(name)),
         family_(kind.create(), kind.destroy),
         detector_(apriltag_detector_create(), apriltag_detector_destroy) {
     apriltag_detector_add_family_bits(detector_.get(), family_.get(), kCorrectedBits);
-    detector_->quad_decimate = kDecimate;
+    detector_->quad_decimate = static_cast<float>(decimate);
     detector_->nthreads = 1;
   }
 
@@ -159,22 +160,28 @@ class AprilTagSystem final : public System {
   std::vector<Sighting> sightings_;
 };
 
+Contender contender_of(const FamilyKind& kind, const std::string& name, int decimate) {
+  return {
+      name,
+      [&kind](const Experiment& experiment) { return square_print(experiment, patterns_of(kind)); },
+      [&kind, name, decimate](const Experiment& experiment) {
+        Systems systems;
+        systems.push_back(std::make_unique<AprilTagSystem>(experiment, kind, name, decimate));
+        return systems;
+      }};
+}
+
 }  // namespace
 
 std::vector<Contender> apriltag_contenders() {
   std::vector<Contender> contenders;
-  for (const FamilyKind& kind : kFamilies) {
-    contenders.push_back({kind.name,
-                          [&kind](const Experiment& experiment) {
-                            return square_print(experiment, patterns_of(kind));
-                          },
-                          [&kind](const Experiment& experiment) {
-                            Systems systems;
-                            systems.push_back(std::make_unique<AprilTagSystem>(experiment, kind));
-                            return systems;
-                          }});
-  }
+  for (const FamilyKind& kind : kFamilies) contenders.push_back(contender_of(kind, kind.name, 1));
   return contenders;
+}
+
+Contender apriltag_contender(int decimate) {
+  const FamilyKind& kind = kFamilies.back();
+  return contender_of(kind, kind.name + std::string("-d") + std::to_string(decimate), decimate);
 }
 
 }  // namespace roundel::bench

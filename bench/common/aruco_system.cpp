@@ -135,4 +135,15 @@ std::vector<Contender> aruco_contenders() {
            }}};
 }
 
+Contender aruco_contender() {
+  Contender contender = aruco_contenders().front();
+  contender.systems = [](const Experiment& experiment) {
+    cv::setNumThreads(1);
+    Systems systems;
+    systems.push_back(std::make_unique<ArucoSystem>(experiment, false));
+    return systems;
+  };
+  return contender;
+}
+
 }  // namespace roundel::bench

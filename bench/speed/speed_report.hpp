@@ -1,0 +1,14 @@
+#pragma once
+
+#include <iosfwd>
+
+#include "bench/speed/timing.hpp"
+
+namespace roundel::bench {
+
+void write_timings_csv(std::ostream& out, const Timings& timings);
+
+// Tables for readers: the targets, met or missed, then every time and its ratio to Roundel's.
+void write_timings_markdown(std::ostream& out, const Timings& timings);
+
+}  // namespace roundel::bench
