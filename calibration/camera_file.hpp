@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "core/camera_model.hpp"
@@ -19,11 +20,13 @@ CameraFile read_camera_file(const std::string& path);
 CameraFile parse_camera_file(const std::string& text, const std::string& file_name);
 
 // The file's text as ROS camera_calibration_parsers and OpenCV-based tools read it: all its keys,
-// with the rectification and projection of an unrectified camera. Numbers read back exactly.
-std::string format_camera_file(const CameraFile& file);
+// with the rectification and projection of an unrectified camera. Numbers read back exactly. The
+// comments stand above, a line each; readers pass over them.
+std::string format_camera_file(const CameraFile& file, std::span<const std::string> comments = {});
 
 // Writes it at once or not at all (atomic_file.hpp).
-void write_camera_file(const std::string& path, const CameraFile& file);
+void write_camera_file(const std::string& path, const CameraFile& file,
+                       std::span<const std::string> comments = {});
 
 // Intrinsics hold for one resolution. Throws std::runtime_error that names the file and both
 // resolutions unless the camera's is that of the frames.

@@ -55,7 +55,7 @@ bool is_plain_word(const std::string& name) {
 
 }  // namespace
 
-std::string format_camera_file(const CameraFile& file) {
+std::string format_camera_file(const CameraFile& file, std::span<const std::string> comments) {
   const CameraModel& c = file.camera;
   const auto& [k1, k2, p1, p2, k3] = c.distortion;
   for (const char ch : file.name) {
@@ -68,7 +68,10 @@ std::string format_camera_file(const CameraFile& file) {
   const std::array<double, 5> lens = {k1, k2, p1, p2, k3};
   const std::array<double, 9> rectification = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::array<double, 12> projection = {c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0};
-  return fmt::format("image_width: {}\nimage_height: {}\ncamera_name: {}\n", c.width, c.height,
+  std::string text;
+  for (const std::string& comment : comments) text += "# " + comment + "\n";
+  return text +
+         fmt::format("image_width: {}\nimage_height: {}\ncamera_name: {}\n", c.width, c.height,
                      name) +
          matrix("camera_matrix", 3, 3, intrinsics) + "distortion_model: plumb_bob\n" +
          matrix("distortion_coefficients", 1, 5, lens) +
@@ -76,8 +79,9 @@ std::string format_camera_file(const CameraFile& file) {
          matrix("projection_matrix", 3, 4, projection);
 }
 
-void write_camera_file(const std::string& path, const CameraFile& file) {
-  write_file_atomically(path, format_camera_file(file));
+void write_camera_file(const std::string& path, const CameraFile& file,
+                       std::span<const std::string> comments) {
+  write_file_atomically(path, format_camera_file(file, comments));
 }
 
 }  // namespace roundel

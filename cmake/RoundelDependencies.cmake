@@ -10,6 +10,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
+pkg_check_modules(V4L REQUIRED IMPORTED_TARGET libv4l2)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 find_program(LCM_GEN lcm-gen REQUIRED)
 

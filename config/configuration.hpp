@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace roundel {
 // What the user sets, one struct a section of roundel.yaml, where every key is explained. These
 // defaults are those of the embedded file (tested); fields.cpp has names and ranges.
 
-enum class SourceKind { kSimulator, kFiles };
+enum class SourceKind { kSimulator, kFiles, kCamera };
 
 struct SimulatorSettings {
   int width = 1920, height = 1080;  // pixels
@@ -35,6 +36,18 @@ struct FilesSettings {
 struct CameraSettings {
   std::string name = "camera";
   std::string calibration;  // path; empty: none (the simulator knows its own lens)
+
+  // Which camera; all empty: the first that can capture.
+  std::string device;                               // node or link
+  std::string match_card, match_bus, match_serial;  // part of the name; exactly; exactly
+
+  std::string format = "auto";                                       // V4L2's four letters
+  int width = 0, height = 0;                                         // pixels; 0: what suits
+  double frame_rate = 30;                                            // frames a second
+  int crop_left = 0, crop_top = 0, crop_width = 0, crop_height = 0;  // pixels; width 0: none
+  int buffers = 4;
+  double timeout = 0.4;                         // seconds
+  std::map<std::string, std::string> controls;  // by their V4L2 names
 };
 
 struct LcmSettings {

@@ -31,6 +31,11 @@ bool is_printable(FieldTarget value) {
   return true;
 }
 
+bool is_path_or_empty(FieldTarget value) {
+  const std::string& text = *std::get<std::string*>(value);
+  return text.empty() || text.front() == '/';
+}
+
 constexpr std::array kFields = {
     Field{"source", ROUNDEL_TARGET(source)},
 
@@ -55,6 +60,22 @@ constexpr std::array kFields = {
     Field{"camera.name", ROUNDEL_TARGET(camera.name), 1, 64, is_printable,
           "text of 1 to 64 printable characters"},
     Field{"camera.calibration", ROUNDEL_TARGET(camera.calibration), 0, 4096},
+    Field{"camera.device", ROUNDEL_TARGET(camera.device), 0, 4096, is_path_or_empty,
+          "a path, as in /dev/video0 or /dev/v4l/by-id/..., or nothing"},
+    Field{"camera.match_card", ROUNDEL_TARGET(camera.match_card), 0, 100},
+    Field{"camera.match_bus", ROUNDEL_TARGET(camera.match_bus), 0, 100},
+    Field{"camera.match_serial", ROUNDEL_TARGET(camera.match_serial), 0, 256},
+    Field{"camera.format", ROUNDEL_TARGET(camera.format), 1, 7},
+    Field{"camera.width", ROUNDEL_TARGET(camera.width), 0, 16384},
+    Field{"camera.height", ROUNDEL_TARGET(camera.height), 0, 16384},
+    Field{"camera.frame_rate", ROUNDEL_TARGET(camera.frame_rate), 0.1, 1000},
+    Field{"camera.crop_left", ROUNDEL_TARGET(camera.crop_left), 0, 16384},
+    Field{"camera.crop_top", ROUNDEL_TARGET(camera.crop_top), 0, 16384},
+    Field{"camera.crop_width", ROUNDEL_TARGET(camera.crop_width), 0, 16384},
+    Field{"camera.crop_height", ROUNDEL_TARGET(camera.crop_height), 0, 16384},
+    Field{"camera.buffers", ROUNDEL_TARGET(camera.buffers), 2, 32},
+    Field{"camera.timeout", ROUNDEL_TARGET(camera.timeout), 0.05, 60},
+    Field{"camera.controls", ROUNDEL_TARGET(camera.controls)},
 
     Field{"marker.diameter", ROUNDEL_TARGET(detector.diameter_m), 0.001, 10},
     Field{"marker.bits", ROUNDEL_TARGET(detector.bits), 0, kMaxBits, bits_exist,
@@ -97,7 +118,10 @@ struct Words {
   std::string operator()(const std::vector<std::string>*) const {
     return "a list of text, as in [a.png, b.png]";
   }
-  std::string operator()(const SourceKind*) const { return "simulator, files"; }
+  std::string operator()(const std::map<std::string, std::string>*) const {
+    return "names and values, as in {auto_exposure: Manual Mode, gain: 20}";
+  }
+  std::string operator()(const SourceKind*) const { return "simulator, files, camera"; }
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,8 +13,8 @@
 namespace roundel {
 
 // Where the value of a key lives in a Configuration, and so its type.
-using FieldTarget =
-    std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*, SourceKind*>;
+using FieldTarget = std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*,
+                                 std::map<std::string, std::string>*, SourceKind*>;
 
 // One key of roundel.yaml. Everything that knows about keys (reader, overrides, error messages,
 // differences, tests of the sample file) is driven by this table.

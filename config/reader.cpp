@@ -95,6 +95,21 @@ struct ReadValue {
     }
     return {};
   }
+  std::string operator()(std::map<std::string, std::string>* target) const {
+    target->clear();
+    if (node.IsNull()) return {};
+    if (!node.IsMap()) return "is not a list of names with values";
+    if (node.size() > kMaxListLength) return "is too long";
+    for (const auto& entry : node) {
+      const bool text = entry.first.IsScalar() && !entry.first.Scalar().empty() &&
+                        entry.second.IsScalar() && !entry.second.Scalar().empty();
+      if (!text) return "has a name or a value that is not text or a number";
+      if (!target->emplace(entry.first.Scalar(), entry.second.Scalar()).second) {
+        return fmt::format("has {} twice", shown(entry.first.Scalar()));
+      }
+    }
+    return {};
+  }
   std::string operator()(SourceKind* target) const {
     const std::string kind = node.IsScalar() ? node.Scalar() : "";
     if (kind == "simulator") {
@@ -102,7 +117,7 @@ struct ReadValue {
     } else if (kind == "files") {
       *target = SourceKind::kFiles;
     } else if (kind == "camera") {
-      return "is not supported by this version yet";
+      *target = SourceKind::kCamera;
     } else {
       return "is no source";
     }
@@ -151,6 +166,11 @@ class Reader {
       throw loaded_.error("detector.min_diameter_px",
                           fmt::format("{} is more than max_diameter_px; accepted: at most {}",
                                       c.detector.min_diameter_px, c.detector.max_diameter_px));
+    }
+    if ((c.camera.crop_width == 0) != (c.camera.crop_height == 0)) {
+      throw loaded_.error("camera.crop_width",
+                          "and camera.crop_height go together; accepted: both 0 (no crop), or both "
+                          "more");
     }
     return std::move(loaded_);
   }

@@ -39,4 +39,15 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
   return patch;
 }
 
+Eigen::Matrix<double, 2, 4> LensPatch::row(double dv) const {
+  const double y = dv * scale_, s = scale_;
+  const auto& c = coefficients_;  // of 1, x, y, xx, xy, yy, xxx, xxy, xyy, yyy
+  Eigen::Matrix<double, 2, 4> row;
+  row.col(0) = c.col(0) + y * (c.col(2) + y * (c.col(5) + y * c.col(9)));
+  row.col(1) = s * (c.col(1) + y * (c.col(4) + y * c.col(8)));
+  row.col(2) = s * s * (c.col(3) + y * c.col(7));
+  row.col(3) = s * s * s * c.col(6);
+  return row;
+}
+
 }  // namespace roundel

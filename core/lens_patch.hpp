@@ -25,6 +25,9 @@ class LensPatch {
     return coefficients_ * terms;
   }
 
+  // The same along a row: coefficients of 1, du, du^2 and du^3.
+  Eigen::Matrix<double, 2, 4> row(double dv) const;
+
   const Eigen::Vector2d& middle() const { return middle_; }
 
   // d(normalised)/d(pixel) at the middle.

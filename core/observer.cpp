@@ -22,6 +22,12 @@ constexpr double kToothEdgeNoise = 0.15;
 // what has more is something else.
 constexpr double kMaxResidual = 0.12;
 
+// Pixels farther from an edge tell nothing of it under any usual blur.
+constexpr double kReach = 3.0;
+
+// Residuals of a rough start, share of the contrast.
+constexpr double kFirstDeviation = 0.15;
+
 // A hypothesis behind by so much in its log-likelihood before it is refined stays behind.
 constexpr double kDecided = 1000;
 
@@ -84,7 +90,7 @@ double plain_log_likelihood(const Segment& segment, double inner_area_share,
 }  // namespace
 
 Observer::Observer(const DetectorParameters& parameters, std::optional<CameraModel> camera)
-    : parameters_(parameters), camera_(camera) {
+    : parameters_(parameters), camera_(camera), fit_(parameters.response) {
   check(parameters);
   if (parameters.bits != 0) reader_.emplace(parameters.bits, parameters.hamming);
 }
@@ -102,8 +108,8 @@ struct Observer::Candidate {
   bool explained(double contrast) const {
     if (!fitted) return true;
     if (pattern.kind == Pattern::Kind::kPlain &&
-        (fitted->inner_ratio < kPlainInnerRatioMin - 0.04 ||
-         fitted->inner_ratio > kPlainInnerRatioMax + 0.04)) {
+        (fitted->state.inner_ratio < kPlainInnerRatioMin - 0.04 ||
+         fitted->state.inner_ratio > kPlainInnerRatioMax + 0.04)) {
       return false;
     }
     return fitted->mean_square < kMaxResidual * kMaxResidual * contrast * contrast;
@@ -177,9 +183,10 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
 // they explain the picture takes the place of what their teeth or bright centres said before.
 void Observer::refine(const LumaView& frame, const Segment& segment,
                       std::array<Candidate, 2>& candidates) {
-  constexpr int kMaxSteps = 6;
   const double radius_m = parameters_.diameter_m / 2;
-  const bool loaded = fit_.load(frame, *camera_, segment.ellipse, segment.levels, radius_m);
+  const bool loaded = fit_.load(frame, *camera_, segment.ellipse, radius_m, kReach);
+  FitPlan plan;
+  plan.deviation = kFirstDeviation * segment.levels.contrast();
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
     auto& fitted = candidate.fitted;
@@ -188,10 +195,13 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     // Beside an unknown inner ratio, a shift of all edges looks like another distance.
     if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
     const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
-    if (loaded && lead < kDecided)
-      fitted = fit_.fit(hypothesis.pose, candidate.pattern, look, kMaxSteps);
+    if (loaded && lead < kDecided) {
+      const PhotometricState start =
+          fit_.first_guess(hypothesis.pose, segment.levels, candidate.pattern, look);
+      fitted = fit_.fit(start, candidate.pattern, look, plan);
+    }
     if (fitted) {
-      hypothesis.pose = fitted->pose;
+      hypothesis.pose = fitted->state.pose;
       hypothesis.covariance = fitted->covariance;
       if (candidate.pattern.kind != Pattern::Kind::kCode) {
         hypothesis.pose = pose_from_circle({hypothesis.pose.position, hypothesis.pose.normal()}, 0);

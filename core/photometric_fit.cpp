@@ -4,23 +4,18 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "core/lens_patch.hpp"
 
 namespace roundel {
 
 namespace {
 
-constexpr double kInnerLimit = 0.8;  // pixels inside see the inner edges, outside the outer rim
-constexpr double kMaxOutside = 0.2;  // of the radius: inside the white margin
-constexpr double kReachPx = 3.0;     // beyond some blur widths of an edge nothing is to be learned
-constexpr int kMaxPixels = 6000;     // larger markers are thinned out
-constexpr double kMinBlur = 0.29;    // the pixel's own width, 1/sqrt(12)
+constexpr double kMinBlur = 0.29;  // the pixel's own width, 1/sqrt(12)
+constexpr double kMaxStretch = 0.9;
 
 // What is known before anything is seen, one standard deviation. Weak against any marker that can
 // be read; they keep what can't be told apart from running away.
 constexpr double kSlopePrior = 0.3;  // of the light, share a radius
+constexpr double kStretchPrior = 0.5;
 constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
@@ -32,86 +27,38 @@ constexpr double kRobust = 3.0, kOutlier = 8.0;
 
 }  // namespace
 
-void PhotometricFit::Columns::clear() {
-  for (auto* column : {&x, &y, &grey, &weight}) column->clear();
-  used = 0;
-}
-
-void PhotometricFit::Columns::add(double px, double py, double level) {
-  x.push_back(static_cast<float>(px));
-  y.push_back(static_cast<float>(py));
-  grey.push_back(static_cast<float>(level));
-  weight.push_back(1);
-  ++used;
-}
-
-void PhotometricFit::Columns::fill_up() {
-  while (x.size() % 8 != 0) {
-    x.push_back(x.back());
-    y.push_back(y.back());
-    grey.push_back(grey.back());
-    weight.push_back(0);
-  }
-}
-
-PixelColumns PhotometricFit::Columns::view() const {
-  return {x.data(), y.data(), grey.data(), weight.data(), static_cast<int>(x.size())};
-}
+struct PhotometricFit::Step {
+  Vector change = Vector::Zero();
+  double mean_square = 0;  // of the residuals before it
+  double gain = 0;  // what it takes off the sum of squares, in units of the residuals' variance
+  PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes
+};
 
 bool PhotometricFit::load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
-                          const Levels& levels, double radius_m) {
+                          double radius_m, double reach_px) {
   radius_m_ = radius_m;
-  radius_px_ = std::sqrt(ellipse.a * ellipse.b);
-  levels_ = levels;
-  const double outside = std::min(kMaxOutside * ellipse.b, kReachPx);
-  const double a = ellipse.a + outside, b = ellipse.b + outside;
-  const double cosine = std::cos(ellipse.angle), sine = std::sin(ellipse.angle);
-  const double half_u = std::hypot(a * cosine, b * sine), half_v = std::hypot(a * sine, b * cosine);
-  const auto patch = LensPatch::make(camera, {ellipse.u, ellipse.v}, std::max(half_u, half_v));
-  if (!patch) return false;
-  middle_ = patch->normalise(0, 0);
-  pixel_slope_ = patch->slope();
-
-  const int u0 = std::max(0, static_cast<int>(std::ceil(ellipse.u - half_u)));
-  const int u1 = std::min(frame.width - 1, static_cast<int>(std::floor(ellipse.u + half_u)));
-  const int v0 = std::max(0, static_cast<int>(std::ceil(ellipse.v - half_v)));
-  const int v1 = std::min(frame.height - 1, static_cast<int>(std::floor(ellipse.v + half_v)));
-  const double area = std::numbers::pi * a * b;
-  const int stride = std::max(1, static_cast<int>(std::lround(std::sqrt(area / kMaxPixels))));
-  // Bands around the edges, in shares of the outline's radius; flat pixels tell nothing new.
-  const double reach = kReachPx / ellipse.b;
-  const double rim_low = std::max(kInnerLimit, 1 - reach), rim_high = 1 + outside / ellipse.b;
-  const double inner_low = std::max(0.0, kPlainInnerRatioMin - reach);
-  const double inner_high = std::min(kInnerLimit, kCodeOuterRatio + reach);
-  outer_.clear();
-  inner_.clear();
-  for (int v = v0; v <= v1; v += stride) {
-    const double dv = v - ellipse.v;
-    for (int u = u0; u <= u1; u += stride) {
-      const double du = u - ellipse.u;
-      const double along_a = (du * cosine + dv * sine) / ellipse.a;
-      const double along_b = (dv * cosine - du * sine) / ellipse.b;
-      const double square = along_a * along_a + along_b * along_b;
-      const bool rim = square >= rim_low * rim_low && square <= rim_high * rim_high;
-      const bool inside = square >= inner_low * inner_low && square <= inner_high * inner_high;
-      if (!rim && !inside) continue;
-      const Eigen::Vector2d n = patch->normalise(du, dv) - middle_;
-      (rim ? outer_ : inner_).add(n.x(), n.y(), frame.at(u, v));
-    }
-  }
-  if (outer_.used < 2 * kUnknowns || inner_.used == 0) return false;
-  outer_.fill_up();
-  inner_.fill_up();
-  return true;
+  return pixels_.load(frame, camera, response_, ellipse, reach_px);
 }
 
-PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pattern,
+PhotometricState PhotometricFit::first_guess(const Pose& pose, const Levels& levels,
+                                             const Pattern& pattern, const EdgeLook& look) const {
+  PhotometricState state;
+  state.pose = pose;
+  state.dark = response_.light(levels.dark);
+  state.contrast = response_.light(levels.bright) - state.dark;
+  state.blur_px = look.blur_px;
+  state.shift_px = look.shift_px;
+  state.inner_ratio = pattern.inner_ratio;
+  return state;
+}
+
+PhotometricModel PhotometricFit::model_of(const PhotometricState& state, const Pattern& pattern,
                                           double deviation) const {
   const Eigen::Matrix3d axes = state.pose.orientation.toRotationMatrix();
   Eigen::Matrix3d to_image;
   to_image << radius_m_ * axes.col(0), radius_m_ * axes.col(1), state.pose.position;
   const Eigen::Matrix3d to_plane = to_image.inverse();
-  const Eigen::Vector3d at = to_plane * middle_.homogeneous();
+  const Eigen::Vector3d at = to_plane * pixels_.middle().homogeneous();
   const Eigen::Vector3d eye = axes.transpose() * -state.pose.position / radius_m_;
   PhotometricModel m{};
   // Everything is scaled by the depth at the middle, which keeps single precision exact enough.
@@ -123,16 +70,19 @@ PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pat
     m.by_y[k] = static_cast<float>(to_plane(i, 1) * scale);
     m.eye[k] = static_cast<float>(eye[i]);
   }
-  m.pixel_slope = {static_cast<float>(pixel_slope_(0, 0)), static_cast<float>(pixel_slope_(0, 1)),
-                   static_cast<float>(pixel_slope_(1, 0)), static_cast<float>(pixel_slope_(1, 1))};
+  const Eigen::Matrix2d& slope = pixels_.pixel_slope();
+  m.pixel_slope = {static_cast<float>(slope(0, 0)), static_cast<float>(slope(0, 1)),
+                   static_cast<float>(slope(1, 0)), static_cast<float>(slope(1, 1))};
   m.dark = static_cast<float>(state.dark);
   m.contrast = static_cast<float>(state.contrast);
   m.slope_x = static_cast<float>(state.slope_x);
   m.slope_y = static_cast<float>(state.slope_y);
-  m.blur = static_cast<float>(state.blur);
-  m.shift = static_cast<float>(state.shift);
+  m.blur = static_cast<float>(state.blur_px);
+  m.shift = static_cast<float>(state.shift_px);
+  m.stretch_u = static_cast<float>(state.stretch_u);
+  m.stretch_d = static_cast<float>(state.stretch_d);
   const bool coded = pattern.kind == Pattern::Kind::kCode;
-  m.inner = static_cast<float>(coded ? kCodeInnerRatio : state.inner);
+  m.inner = static_cast<float>(coded ? kCodeInnerRatio : state.inner_ratio);
   m.halves = coded ? 2 * pattern.bits : 0;
   const auto bright = [&](int half) {
     const int k = (half + m.halves) % m.halves;
@@ -149,24 +99,52 @@ PhotometricModel PhotometricFit::model_of(const State& state, const Pattern& pat
   return m;
 }
 
-void PhotometricFit::add_priors(const State& state, const Pattern& pattern, const EdgeLook& look,
-                                double variance, Matrix& normal_matrix, Vector& right_side) const {
+// Solves the normal equations with what is known beforehand.
+template <int kCount>
+PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const Pattern& pattern,
+                                           const EdgeLook& look,
+                                           const PhotometricSums& sums) const {
+  Eigen::Matrix<double, kCount, kCount> normal_matrix;
+  Eigen::Matrix<double, kCount, 1> right_side;
+  std::size_t at = 0;
+  for (int r = 0; r < kCount; ++r) {
+    for (int c = 0; c <= r; ++c, ++at) {
+      normal_matrix(r, c) = normal_matrix(c, r) = static_cast<double>(sums.normal_matrix[at]);
+    }
+    right_side[r] = static_cast<double>(sums.right_side[static_cast<std::size_t>(r)]);
+  }
+  Step step;
+  step.mean_square = static_cast<double>(sums.squares / std::max(1.0F, sums.weights));
+  const double variance = std::max(step.mean_square, kLeastVariance);
   const auto add = [&](int unknown, double difference, double deviation) {
     const double weight = variance / (deviation * deviation);
     normal_matrix(unknown, unknown) += weight;
     right_side[unknown] += weight * difference;
   };
-  add(kShift, look.shift_px - state.shift, look.shift_sigma_px);
-  add(kBlur, std::log(look.blur_px / state.blur), std::log(look.blur_factor));
-  add(kSlopeX, -state.slope_x, kSlopePrior);
-  add(kSlopeY, -state.slope_y, kSlopePrior);
-  const bool plain = pattern.kind == Pattern::Kind::kPlain;
-  add(kInner, pattern.inner_ratio - state.inner, plain ? kInnerPrior : kPinned);
+  add(kShift, look.shift_px - state.shift_px, look.shift_sigma_px);
+  add(kBlur, std::log(look.blur_px / state.blur_px), std::log(look.blur_factor));
   if (pattern.kind != Pattern::Kind::kCode) add(kTurnZ, 0, kPinned);
+  if constexpr (kCount > kFollowedUnknowns) {
+    add(kSlopeX, -state.slope_x, kSlopePrior);
+    add(kSlopeY, -state.slope_y, kSlopePrior);
+    add(kStretchU, -state.stretch_u, kStretchPrior);
+    add(kStretchD, -state.stretch_d, kStretchPrior);
+  }
+  if constexpr (kCount > kCodeUnknowns) {
+    const bool plain = pattern.kind == Pattern::Kind::kPlain;
+    add(kInner, pattern.inner_ratio - state.inner_ratio, plain ? kInnerPrior : kPinned);
+  }
+  const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
+  step.change.template head<kCount>() = solver.solve(right_side);
+  step.gain = right_side.dot(step.change.template head<kCount>()) / variance;
+  const Eigen::Matrix<double, kCount, 6> columns =
+      solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());
+  step.inverse = columns.template topRows<6>();
+  return step;
 }
 
-PhotometricFit::State PhotometricFit::advanced(const State& state, const Vector& step) const {
-  State next = state;
+PhotometricState PhotometricFit::advanced(const PhotometricState& state, const Vector& step) const {
+  PhotometricState next = state;
   const Eigen::Quaterniond& axes = state.pose.orientation;
   next.pose.position += axes * (radius_m_ * step.segment<3>(kMoveX));
   const Eigen::Vector3d turn = step.segment<3>(kTurnX);
@@ -179,65 +157,67 @@ PhotometricFit::State PhotometricFit::advanced(const State& state, const Vector&
   next.contrast += step[kContrast];
   next.slope_x += step[kSlopeX];
   next.slope_y += step[kSlopeY];
-  next.blur = std::max(kMinBlur, next.blur * std::exp(std::clamp(step[kBlur], -0.7, 0.7)));
-  next.shift += step[kShift];
-  next.inner = std::clamp(next.inner + step[kInner], 0.2, 0.7);
+  next.blur_px = std::max(kMinBlur, next.blur_px * std::exp(std::clamp(step[kBlur], -0.7, 0.7)));
+  next.shift_px += step[kShift];
+  next.stretch_u = std::clamp(next.stretch_u + step[kStretchU], -kMaxStretch, kMaxStretch);
+  next.stretch_d = std::clamp(next.stretch_d + step[kStretchD], -kMaxStretch, kMaxStretch);
+  const double stretch = std::hypot(next.stretch_u, next.stretch_d);
+  if (stretch > kMaxStretch) {  // the variance has to stay positive in every direction
+    next.stretch_u *= kMaxStretch / stretch;
+    next.stretch_d *= kMaxStretch / stretch;
+  }
+  next.inner_ratio = std::clamp(next.inner_ratio + step[kInner], 0.2, 0.7);
   return next;
 }
 
 // From the marker's own motion in radii to the camera's axes in metres.
-PoseCovariance PhotometricFit::covariance_of(const State& state, const Matrix& inverse) const {
+PoseCovariance PhotometricFit::to_camera_axes(const PhotometricState& state,
+                                              const PoseCovariance& inverse) const {
   const Eigen::Matrix3d axes = state.pose.orientation.toRotationMatrix();
   PoseCovariance to_camera = PoseCovariance::Zero();
   to_camera.topLeftCorner<3, 3>() = radius_m_ * axes;
   to_camera.bottomRightCorner<3, 3>() = axes;
-  return to_camera * inverse.topLeftCorner<6, 6>() * to_camera.transpose();
+  return to_camera * inverse * to_camera.transpose();
 }
 
-std::optional<PhotometricPose> PhotometricFit::fit(const Pose& start, const Pattern& pattern,
-                                                   const EdgeLook& look, int max_steps) {
-  State state{start, levels_.dark, levels_.contrast(), 0,
-              0,     look.blur_px, look.shift_px,      pattern.inner_ratio};
-  double deviation = 0.15 * levels_.contrast();  // of residuals; generous for the first step
-  for (int step = 1;; ++step) {
+std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start,
+                                                   const Pattern& pattern, const EdgeLook& look,
+                                                   const FitPlan& plan) {
+  PhotometricState state = start;
+  const bool inside = pattern.kind != Pattern::Kind::kUnknown;
+  // Only a code shows the whole of the pose; without one the neutral turn has to be pinned, which
+  // the shorter sets of unknowns allow as well.
+  const int unknowns = pattern.kind == Pattern::Kind::kCode
+                           ? std::min<int>(plan.unknowns, kCodeUnknowns)
+                           : kPhotometricUnknowns;
+  double deviation = plan.deviation;
+  for (int taken = 1;; ++taken) {
     const PhotometricModel model = model_of(state, pattern, deviation);
     PhotometricSums sums;
-    add_outer_pixels(model, outer_.view(), sums);
-    if (pattern.kind != Pattern::Kind::kUnknown) add_inner_pixels(model, inner_.view(), sums);
-    Matrix normal_matrix;
-    Vector right_side;
-    std::size_t at = 0;
-    for (int r = 0; r < kUnknowns; ++r) {
-      for (int c = 0; c <= r; ++c, ++at)
-        normal_matrix(r, c) = normal_matrix(c, r) = sums.normal_matrix[at];
-      right_side[r] = sums.right_side[static_cast<std::size_t>(r)];
-    }
-    const double mean_square = sums.squares / std::max(1.0F, sums.weights);
-    add_priors(state, pattern, look, std::max(mean_square, 0.1), normal_matrix, right_side);
-    const Eigen::LDLT<Matrix> solver(normal_matrix);
-    const Vector change = solver.solve(right_side);
-    if (!change.allFinite()) return std::nullopt;
-    deviation = std::max(0.5, std::sqrt(mean_square));
-    state = advanced(state, change);
+    add_outer_pixels(model, pixels_.outer(), unknowns, sums);
+    if (inside) add_inner_pixels(model, pixels_.inner(), unknowns, sums);
+    const Step step = unknowns == kFollowedUnknowns
+                          ? solve<kFollowedUnknowns>(state, pattern, look, sums)
+                      : unknowns == kCodeUnknowns ? solve<kCodeUnknowns>(state, pattern, look, sums)
+                                                  : solve<kUnknowns>(state, pattern, look, sums);
+    if (!step.change.allFinite()) return std::nullopt;
+    deviation = std::max(0.5, std::sqrt(step.mean_square));
+    state = advanced(state, step.change);
     // Beyond what a start may be off by nothing explains the pixels any more.
-    if ((state.pose.position - start.position).norm() > 0.3 * start.position.norm() ||
-        !(state.contrast > 0) || !(state.pose.normal().dot(state.pose.position) < 0)) {
+    const Pose& pose = state.pose;
+    if ((pose.position - start.pose.position).norm() > 0.3 * start.pose.position.norm() ||
+        !(state.contrast > 0) || !(pose.normal().dot(pose.position) < 0)) {
       return std::nullopt;
     }
-    // What the step takes off the sum of squares, in units of the residuals' variance: one is a move
-    // by a standard deviation, and what is then left to do is of the second order.
-    const double gain = right_side.dot(change) / std::max(mean_square, kLeastVariance);
-    const bool settled = gain < kSettled;
-    if ((settled && step >= 2) || step >= max_steps) {
+    // A gain of one is a move by a standard deviation; what is then left is of the second order.
+    const bool settled = step.gain < kSettled && taken >= plan.min_steps;
+    if (settled || taken >= plan.max_steps) {
       PhotometricPose result;
-      result.pose = {state.pose.position, with_positive_w(state.pose.orientation)};
-      result.mean_square = mean_square;
-      result.pixels = outer_.used + (pattern.kind == Pattern::Kind::kUnknown ? 0 : inner_.used);
-      result.covariance = covariance_of(state, mean_square * solver.solve(Matrix::Identity()));
-      result.levels = {state.dark, state.dark + state.contrast};
-      result.blur_px = state.blur;
-      result.edge_shift_px = state.shift;
-      result.inner_ratio = state.inner;
+      result.state = state;
+      result.state.pose.orientation = with_positive_w(pose.orientation);
+      result.mean_square = step.mean_square;
+      result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
+      result.covariance = to_camera_axes(state, step.mean_square * step.inverse);
       return result;
     }
   }

@@ -3,13 +3,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "core/camera_model.hpp"
 #include "core/covariance.hpp"
 #include "core/luma_view.hpp"
+#include "core/marker_pixels.hpp"
 #include "core/photometric_kernel.hpp"
 #include "core/pose.hpp"
+#include "core/response_curve.hpp"
 #include "core/segment.hpp"
 
 namespace roundel {
@@ -35,65 +36,70 @@ struct EdgeLook {
   double shift_sigma_px = 0.3;
 };
 
+// Everything that the picture of a marker depends on.
+struct PhotometricState {
+  Pose pose;
+  double dark = 0, contrast = 0;  // light, 0 to 255; bright less dark
+  double blur_px = 0, shift_px = 0;
+  double slope_x = 0, slope_y = 0;      // of the light, share a radius, marker axes
+  double stretch_u = 0, stretch_d = 0;  // of the blur (kStretchU, kStretchD)
+  double inner_ratio = 0;               // kPlain
+};
+
+// Where a fit starts and how far it goes.
+struct FitPlan {
+  int unknowns = kPhotometricUnknowns;  // kFollowedUnknowns keeps the others as they are
+  double deviation = 0;  // of the residuals, grey levels, as far as it can be foreseen
+  int min_steps = 2, max_steps = 6;
+};
+
 // A pose fitted to the grey values.
 struct PhotometricPose {
-  Pose pose;
+  PhotometricState state;
   PoseCovariance covariance = PoseCovariance::Zero();
   double mean_square = 0;  // of the residuals, grey levels squared
   int pixels = 0;          // that the fit used
-  Levels levels;
-  double blur_px = 0;
-  double edge_shift_px = 0;
-  double inner_ratio = 0;  // kPlain
 };
 
 // Fits a marker's pose to the grey values of its image (METHOD.md section 6): every pixel near an
 // edge is mapped into the marker's plane, and the grey expected there is dark or bright on either
 // side of the rims and teeth, blended across each edge by the blur. Unknown are the pose, the two
-// levels, a slope of the light, the blur and a common shift of all edges that blur, gamma or ink
-// may cause. Gauss-Newton with analytic derivatives; pixels that no marker explains (glare,
-// occlusion) lose their weight. Working memory is kept from call to call.
+// levels, a slope of the light, the blur, its stretch by motion and a common shift of all edges
+// that gamma or ink may cause. Gauss-Newton with analytic derivatives; pixels that no marker
+// explains (glare, occlusion) lose their weight. Working memory is kept from call to call.
 class PhotometricFit {
  public:
-  // Takes the pixels of the marker under an ellipse. False when there are too few or the lens model
-  // ends.
-  bool load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
-            const Levels& levels, double radius_m);
+  explicit PhotometricFit(const ResponseCurve& response) : response_(response) {}
 
-  // The loaded marker's pose, from a start within about a pixel of it, in at most max_steps steps.
-  // Nothing when it diverges.
-  std::optional<PhotometricPose> fit(const Pose& start, const Pattern& pattern,
-                                     const EdgeLook& look, int max_steps);
+  // Takes the pixels near the edges of the marker under an ellipse, `reach_px` to either side.
+  // False when there are too few or the lens model ends.
+  bool load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
+            double radius_m, double reach_px);
+
+  // A state to start from when nothing but a rough pose and the levels of the segment are known.
+  PhotometricState first_guess(const Pose& pose, const Levels& levels, const Pattern& pattern,
+                               const EdgeLook& look) const;
+
+  // The loaded marker's pose, from a start within about a pixel of it. Nothing when it diverges.
+  std::optional<PhotometricPose> fit(const PhotometricState& start, const Pattern& pattern,
+                                     const EdgeLook& look, const FitPlan& plan);
 
  private:
   static constexpr int kUnknowns = kPhotometricUnknowns;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-  struct Columns {
-    std::vector<float> x, y, grey, weight;
-    int used = 0;
-    void clear();
-    void add(double px, double py, double level);
-    void fill_up();
-    PixelColumns view() const;
-  };
-  struct State {
-    Pose pose;
-    double dark = 0, contrast = 0, slope_x = 0, slope_y = 0, blur = 0, shift = 0, inner = 0;
-  };
+  struct Step;
+  template <int kCount>
+  Step solve(const PhotometricState& state, const Pattern& pattern, const EdgeLook& look,
+             const PhotometricSums& sums) const;
+  PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
+                            double deviation) const;
+  PhotometricState advanced(const PhotometricState& state, const Vector& step) const;
+  PoseCovariance to_camera_axes(const PhotometricState& state, const PoseCovariance& inverse) const;
 
-  PhotometricModel model_of(const State& state, const Pattern& pattern, double deviation) const;
-  void add_priors(const State& state, const Pattern& pattern, const EdgeLook& look, double variance,
-                  Matrix& normal_matrix, Vector& right_side) const;
-  State advanced(const State& state, const Vector& step) const;
-  PoseCovariance covariance_of(const State& state, const Matrix& inverse) const;
-
-  Columns outer_, inner_;
-  Eigen::Vector2d middle_;       // of the marker, normalised
-  Eigen::Matrix2d pixel_slope_;  // d(normalised)/d(pixel) there
-  double radius_m_ = 0, radius_px_ = 0;
-  Levels levels_;
+  ResponseCurve response_;
+  MarkerPixels pixels_;
+  double radius_m_ = 0;
 };
 
 }  // namespace roundel

@@ -8,8 +8,8 @@
 
 namespace roundel {
 
-// Unknowns of the photometric fit, in the order of its normal equations. Motion is that of the
-// marker in its own frame, in units of its radius and radians.
+// Unknowns of the photometric fit, in the order of its normal equations: a fit may leave out those
+// at the end. Motion is that of the marker in its own frame, in units of its radius and radians.
 enum PhotometricUnknown {
   kMoveX,
   kMoveY,
@@ -19,23 +19,28 @@ enum PhotometricUnknown {
   kTurnZ,
   kDark,      // grey levels
   kContrast,  // grey levels
-  kSlopeX,    // of the light, share a radius
+  kBlur,      // logarithm of the edge profile's standard deviation
+  kShift,     // growth of dark over bright, pixels
+  kFollowedUnknowns,
+  kSlopeX = kFollowedUnknowns,  // of the light, share a radius
   kSlopeY,
-  kBlur,   // logarithm of the edge profile's standard deviation
-  kShift,  // growth of dark over bright, pixels
-  kInner,  // radius ratio of a plain marker's bright disc
+  kStretchU,  // of the blur, as motion makes it: relative excess of its variance along u over v
+  kStretchD,  // and along the diagonal u = v over the other one
+  kCodeUnknowns,
+  kInner = kCodeUnknowns,  // radius ratio of a plain marker's bright disc
   kPhotometricUnknowns
 };
 
 // A marker's pixels, one array a quantity (what vector units want). The length is a multiple of
-// eight; the rest is filled with pixels of no weight.
+// kPixelBlock; the rest is filled with pixels of no weight.
 struct PixelColumns {
   const float* x;  // normalised, lens removed, relative to the marker's middle
   const float* y;
-  const float* grey;
-  const float* weight;  // 1, or 0 for filling
-  int count;            // a multiple of eight
+  const float* grey;    // linear in the light
+  const float* weight;  // root of it: grey levels of noise a level of light; 0 for filling
+  int count;
 };
+constexpr int kPixelBlock = 32;
 
 // The model's state, in the form that the kernel wants.
 struct PhotometricModel {
@@ -43,17 +48,18 @@ struct PhotometricModel {
   std::array<float, 3> at, by_x, by_y;
   std::array<float, 4> pixel_slope;  // d(normalised)/d(pixel), row by row
   std::array<float, 3> eye;          // the camera in the marker frame, units of the radius
-  float dark, contrast, slope_x, slope_y, blur, shift;
-  float inner;                              // rim of the bright centre
-  int halves;                               // half-teeth of the code, 0 without
+  float dark, contrast, slope_x, slope_y, blur, shift, stretch_u, stretch_d;
+  float inner;  // rim of the bright centre
+  int halves;   // half-teeth of the code, 0 without
   // Bit k of the middle word: half-tooth k is bright; of the others: its neighbour two before, one
   // before, one after, two after.
   std::array<std::int32_t, 5> colours;
-  float robust_scale;                       // residuals beyond it lose weight, grey levels
-  float outlier;                            // residuals beyond it count for nothing
+  float robust_scale;  // residuals beyond it lose weight, grey levels
+  float outlier;       // residuals beyond it count for nothing
 };
 
-// The lower triangle of the normal matrix, row by row, and the rest of the normal equations.
+// The lower triangle of the normal matrix, row by row, and the rest of the normal equations. What
+// belongs to unknowns that were left out stays zero.
 struct PhotometricSums {
   std::array<float, kPhotometricUnknowns*(kPhotometricUnknowns + 1) / 2> normal_matrix{};
   std::array<float, kPhotometricUnknowns> right_side{};
@@ -66,10 +72,11 @@ enum class VectorUnit {
   kBaseline  // what every processor of the platform has
 };
 
-// Adds the equations of pixels on the outer rim and of those around the inner edges.
-void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels,
+// Adds the equations of pixels on the outer rim and of those around the inner edges, for the first
+// `unknowns` of the unknowns: kFollowedUnknowns, kCodeUnknowns or all.
+void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels, int unknowns,
                       PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
-void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels,
+void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels, int unknowns,
                       PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
 
 }  // namespace roundel

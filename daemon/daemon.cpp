@@ -18,6 +18,35 @@ namespace {
 
 constexpr std::int64_t kStatusPeriodNs = 1'000'000'000;
 
+// The keys that a source is made from; beginnings of them.
+std::initializer_list<std::string_view> source_sections(SourceKind kind) {
+  // Robots wear the markers of the configuration.
+  static const std::initializer_list<std::string_view> simulator = {"simulator.", "marker.",
+                                                                    "camera.calibration"};
+  static const std::initializer_list<std::string_view> files = {"files."};
+  static const std::initializer_list<std::string_view> camera = {
+      "camera.device",     "camera.match_", "camera.format",  "camera.width",  "camera.height",
+      "camera.frame_rate", "camera.crop_",  "camera.buffers", "camera.timeout"};
+  switch (kind) {
+    case SourceKind::kSimulator:
+      return simulator;
+    case SourceKind::kFiles:
+      return files;
+    case SourceKind::kCamera:
+      return camera;
+  }
+  return {};
+}
+
+// Of a camera that runs on.
+void set_controls(const FrameSource& source, const Configuration& values) {
+  const std::shared_ptr<CameraControls> controls = source.controls();
+  if (controls == nullptr) return;
+  for (const std::string& remark : controls->replace(values.camera.controls)) {
+    log_warning("camera.controls: {}", remark);
+  }
+}
+
 }  // namespace
 
 Daemon::Daemon(Load load, SignalDescriptor& signals)
@@ -45,6 +74,9 @@ int Daemon::run() {
     if (wakeup.frame && !carry_frame()) break;
   }
   publish_status();
+  if (const std::string drops = parts_.source->explanation_of_drops(); !drops.empty()) {
+    log_info("{} frames tracked; {}", statistics_.frames(), drops);
+  }
   if (parts_.source->complete()) {
     log_info("ends");
     return 0;
@@ -66,7 +98,7 @@ Daemon::Wakeup Daemon::wait() {
 // The way of a frame: take the newest, track, give back, publish.
 bool Daemon::carry_frame() {
   std::optional<FrameLease> lease = parts_.source->next();
-  information_.camera = parts_.source->state();
+  if (parts_.source->state() != information_.camera) take_state();
   if (!lease) return information_.camera != CameraState::kEnded;
   const CapturedFrame frame = lease->frame();
   FrameTimes times;
@@ -89,6 +121,16 @@ bool Daemon::carry_frame() {
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
   return true;
+}
+
+// Subscribers hear of a lost camera at once. What was tracked before it was lost is not expected
+// where it was.
+void Daemon::take_state() {
+  const CameraState before = information_.camera;
+  information_.camera = parts_.source->state();
+  status_.source = parts_.source->description();
+  if (before == CameraState::kLost) parts_.tracker->reset();
+  if (information_.camera == CameraState::kLost || before == CameraState::kLost) publish_status();
 }
 
 // A calibration holds for one resolution: frames of another one get no poses.
@@ -193,11 +235,7 @@ void Daemon::reload() {
     next.configuration = load_();
     changed = changed_keys(parts_.configuration.values, next.configuration.values);
     const Configuration& values = next.configuration.values;
-    const bool simulator = values.source == SourceKind::kSimulator;
-    // Robots wear the markers of the configuration.
-    const bool new_source =
-        touches({"source"}) || (simulator ? touches({"simulator.", "marker.", "camera.calibration"})
-                                          : touches({"files."}));
+    const bool new_source = touches({"source"}) || touches(source_sections(values.source));
     if (new_source) next.source = make_source(next.configuration);
     next.camera = make_camera(next.configuration, next.source ? *next.source : *parts_.source);
     const bool new_camera = !same_camera(next.camera, parts_.camera);
@@ -214,6 +252,7 @@ void Daemon::reload() {
                                          ? std::string("the calibration")
                                          : fmt::format("{}", fmt::join(changed, ", ")));
     if (!next.source) next.source = std::move(parts_.source);
+    if (!new_source && touches({"camera.controls"})) set_controls(*next.source, values);
     if (!next.tracker) next.tracker = std::move(parts_.tracker);
     if (!next.broadcast) next.broadcast = std::move(parts_.broadcast);
     start(std::move(next));

@@ -48,6 +48,7 @@ class Daemon {
   };
   Wakeup wait();
   bool carry_frame();  // false at the end of the source
+  void take_state();
   void fit_tracker(int width, int height);
   void publish_status();
 

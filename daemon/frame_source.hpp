@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@ struct CapturedFrame {
   StampSource stamp_source = StampSource::kUnknown;
 };
 
+class CameraControls;
 class FrameSource;
 
 // A frame borrowed from its source: the buffer goes back when the lease ends, or earlier by
@@ -70,6 +72,10 @@ class FrameSource {
 
   // The exact lens, where the source knows it.
   virtual std::optional<CameraModel> camera() const { return std::nullopt; }
+  // A camera's controls, for any thread; other sources have none.
+  virtual std::shared_ptr<CameraControls> controls() const { return nullptr; }
+  // Why frames were left out, in words; empty: there is nothing to tell.
+  virtual std::string explanation_of_drops() const { return {}; }
   // After state() is kEnded: whether everything could be read.
   virtual bool complete() const { return true; }
 

@@ -14,7 +14,7 @@ namespace {
 
 enum ExitStatus { kSuccess = 0, kDataError = 1, kUsageError = 2 };
 
-// Everything that can be checked without starting.
+// Everything that can be checked without starting; whether a camera is there is not.
 void check(const roundel::LoadedConfiguration& configuration) {
   const auto source = roundel::make_source(configuration);
   const auto camera = roundel::make_camera(configuration, *source);

@@ -1,11 +1,13 @@
 #include "daemon/setup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <stdexcept>
 
 #include "calibration/camera_file.hpp"
+#include "daemon/capture/camera_source.hpp"
 #include "daemon/files_source.hpp"
 #include "daemon/simulator_source.hpp"
 #include "transport/lcm_url.hpp"
@@ -45,10 +47,42 @@ std::unique_ptr<FrameSource> make_simulator(const LoadedConfiguration& configura
   }
 }
 
+std::uint32_t fourcc_of(const LoadedConfiguration& configuration) {
+  const std::string& name = configuration.values.camera.format;
+  if (name == "auto") return 0;
+  const std::optional<std::uint32_t> fourcc = parse_fourcc(name);
+  if (fourcc && find_pixel_format(*fourcc) != nullptr) return *fourcc;
+  std::vector<std::string> names = {"auto"};
+  for (const PixelFormat& format : pixel_formats()) names.push_back(fourcc_name(format.fourcc));
+  throw configuration.error("camera.format",
+                            fmt::format("\"{}\" is no format that can be read; accepted: {}", name,
+                                        fmt::join(names, ", ")));
+}
+
 }  // namespace
+
+CameraParameters camera_parameters(const LoadedConfiguration& configuration) {
+  const CameraSettings& settings = configuration.values.camera;
+  CameraParameters parameters;
+  parameters.choice = {settings.device, settings.match_card, settings.match_bus,
+                       settings.match_serial};
+  parameters.mode = {
+      fourcc_of(configuration),
+      settings.width,
+      settings.height,
+      settings.frame_rate,
+      {settings.crop_left, settings.crop_top, settings.crop_width, settings.crop_height}};
+  parameters.controls = settings.controls;
+  parameters.buffers = settings.buffers;
+  parameters.timeout_s = settings.timeout;
+  return parameters;
+}
 
 std::unique_ptr<FrameSource> make_source(const LoadedConfiguration& configuration) {
   if (configuration.values.source == SourceKind::kSimulator) return make_simulator(configuration);
+  if (configuration.values.source == SourceKind::kCamera) {
+    return std::make_unique<CameraSource>(camera_parameters(configuration));
+  }
   const FilesSettings& files = configuration.values.files;
   return std::make_unique<FilesSource>(FilesParameters{files.paths, files.frame_rate, files.loop});
 }
@@ -59,7 +93,8 @@ std::optional<CameraModel> make_camera(const LoadedConfiguration& configuration,
   const std::string& path = configuration.values.camera.calibration;
   if (path.empty()) return std::nullopt;
   const CameraModel camera = read_camera_file(path).camera;
-  check_resolution(camera, source.width(), source.height(), path);
+  // A camera tells its resolution with the first frame.
+  if (source.width() > 0) check_resolution(camera, source.width(), source.height(), path);
   return camera;
 }
 

@@ -7,6 +7,7 @@
 #include "config/reader.hpp"
 #include "core/tracker.hpp"
 #include "daemon/broadcast.hpp"
+#include "daemon/capture/camera_source.hpp"
 #include "daemon/frame_source.hpp"
 
 namespace roundel {
@@ -14,7 +15,10 @@ namespace roundel {
 // Makes the daemon's parts from a configuration. All throw ConfigError, naming the place of the
 // key, where the configuration is at fault, and std::runtime_error where a file is.
 
+// A camera is opened later, and waited for if it is not there.
 std::unique_ptr<FrameSource> make_source(const LoadedConfiguration& configuration);
+
+CameraParameters camera_parameters(const LoadedConfiguration& configuration);
 
 // The lens that poses are computed with; nothing without a calibration. Refuses one that is not for
 // the source's resolution.

@@ -26,6 +26,7 @@ class Statistics {
   // Fills in uptime, frames, frame rate, markers and latencies, and begins a new interval.
   void report(TimeStamp current, status_t& status);
 
+  std::int64_t frames() const { return frames_; }  // of this session
   // Frames are counted from 0 again.
   void begin_session() { frames_ = 0; }
 

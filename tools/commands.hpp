@@ -17,6 +17,8 @@ void add_track(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_markers(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_listen(CLI::App& app);
+void add_cameras(CLI::App& app);
 
 }  // namespace roundel

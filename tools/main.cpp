@@ -49,7 +49,9 @@ int run(int argc, char** argv) {
   roundel::add_simulate(app);
   roundel::add_compare(app);
   roundel::add_markers(app);
+  roundel::add_calibrate(app);
   roundel::add_listen(app);
+  roundel::add_cameras(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/sheet_foot.hpp"
+
 namespace roundel {
 namespace {
 
 constexpr double kCutLineMm = 0.1;
 constexpr double kCutLineGrey = 0.5;
 constexpr double kMaxLabelMm = 4;  // cap height of labels
-constexpr double kRulerLineMm = 0.1;
 
 void set_grey(cairo_t* context, double grey) {
   cairo_set_source_rgb(context, grey, grey, grey);
@@ -84,30 +85,6 @@ void draw_cell(cairo_t* context, const PrintedMarker& marker, double diameter_mm
   draw_marker(context, marker.pattern, left + side / 2, top + side / 2, diameter_mm / 2);
 }
 
-// Every millimetre a line, every fifth longer, every tenth longest and numbered.
-void draw_ruler(cairo_t* context, double left, double top, int length_mm) {
-  set_grey(context, 0);
-  cairo_set_line_width(context, kRulerLineMm);
-  line(context, left, top, left + length_mm, top);
-  for (int mm = 0; mm <= length_mm; ++mm) {
-    line(context, left + mm, top, left + mm, top + (mm % 10 == 0 ? 4 : mm % 5 == 0 ? 3 : 2));
-  }
-  cairo_stroke(context);
-  for (int mm = 0; mm <= length_mm; mm += 10) {
-    const std::string number = mm == length_mm ? fmt::format("{} mm", mm) : fmt::format("{}", mm);
-    const TextSize digits = measure(context, fmt::format("{}", mm), 2.5);
-    cairo_move_to(context, left + mm - digits.width / 2, top + 6.5);
-    cairo_show_text(context, number.c_str());
-  }
-}
-
-void draw_line_of_text(cairo_t* context, double left, double baseline, double font_size,
-                       const std::string& text) {
-  cairo_set_font_size(context, font_size);
-  cairo_move_to(context, left, baseline);
-  cairo_show_text(context, text.c_str());
-}
-
 }  // namespace
 
 PageSize bare_page(double diameter_mm) {
@@ -128,14 +105,10 @@ void draw_sheet(cairo_t* context, const SheetLayout& layout, double diameter_mm,
     draw_cell(context, markers[i], diameter_mm, layout.left_mm + column * layout.cell_mm,
               layout.top_mm + row * layout.cell_mm, layout.cell_mm);
   }
-  constexpr double kIndent = 5;
-  const double left = (layout.page.width_mm - 180) / 2 + kIndent;
-  draw_ruler(context, left, layout.ruler_top_mm + 2, 170);
-  draw_line_of_text(context, left, layout.ruler_top_mm + 13, 4,
-                    fmt::format("Print at 100 % (no scaling) and measure the black disc: {:.1f} mm",
-                                diameter_mm));
-  draw_line_of_text(context, left, layout.ruler_top_mm + 17, 2.8,
-                    "Where it measures otherwise, give roundel the diameter that you measured.");
+  draw_sheet_foot(
+      context, layout,
+      fmt::format("Print at 100 % (no scaling) and measure the black disc: {:.1f} mm", diameter_mm),
+      "Where it measures otherwise, give roundel the diameter that you measured.");
 }
 
 }  // namespace roundel

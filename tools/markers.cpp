@@ -12,6 +12,7 @@
 
 #include "core/necklace.hpp"
 #include "daemon/image_file.hpp"
+#include "tools/board_sheet.hpp"
 #include "tools/commands.hpp"
 #include "tools/id_list.hpp"
 #include "tools/marker_sheet.hpp"
@@ -29,8 +30,12 @@ struct MarkersOptions {
   std::string ids;
   bool all = false;
   std::optional<double> plain_ratio;
+  bool board = false;
+  int columns = Board{}.columns, rows = Board{}.rows;
+  std::optional<double> spacing_m;         // of the board; else as large as fits
+  std::optional<double> given_diameter_m;  // on the command line
   int copies = 1;
-  double diameter_m = kDefaultDiameter;
+  double diameter_m = kDefaultDiameter;  // of what is printed
   std::string paper = "A4";
   std::string output;
   std::string format = "pdf";  // of the files in a directory
@@ -111,6 +116,31 @@ Document make_document(const MarkersOptions& options, std::span<const PrintedMar
   return bare(options) ? bare_document(options, markers) : sheet_document(options, markers);
 }
 
+// The board of the options, as large as the paper allows where they leave it open.
+Board chosen_board(const MarkersOptions& options) {
+  Board board;
+  board.columns = options.columns;
+  board.rows = options.rows;
+  board.bits = options.bits;
+  board.hamming = options.hamming;
+  checked(board);  // before columns and rows are divided by
+  if (options.spacing_m) {
+    board.spacing_m = *options.spacing_m;
+    board.diameter_m = kBoardDiameterRatio * board.spacing_m;
+  } else {
+    board = largest_board(options.paper, board);
+  }
+  if (options.given_diameter_m) board.diameter_m = *options.given_diameter_m;
+  return checked(board);
+}
+
+Document board_document(const MarkersOptions& options) {
+  const Board board = chosen_board(options);
+  const SheetLayout layout = lay_out_board(options.paper, board);
+  return {layout.page,
+          {[layout, board](cairo_t* context) { draw_board_sheet(context, layout, board); }}};
+}
+
 double pixels_per_mm(const MarkersOptions& options, PageSize size) {
   const double density = options.pixels > 0
                              ? options.pixels / std::max(size.width_mm, size.height_mm)
@@ -182,11 +212,23 @@ std::string format_of(const std::string& path) {
   return extension.substr(1);
 }
 
+void make_board(const MarkersOptions& options) {
+  if (bare(options)) {
+    throw UsageError("a board needs a sheet: --paper A4, A3 or Letter, and --dpi for PNG files");
+  }
+  write_document(options, board_document(options), options.output, format_of(options.output));
+}
+
 void make_markers(MarkersOptions& options) {
   if (options.pixels > 0) {
     options.paper = "none";
   }
+  options.diameter_m = options.given_diameter_m.value_or(kDefaultDiameter);
   try {
+    if (options.board) {
+      make_board(options);
+      return;
+    }
     const std::vector<PrintedMarker> markers = chosen_markers(options);
     if (options.output.ends_with('/') || std::filesystem::is_directory(options.output)) {
       write_directory(options, markers);
@@ -214,13 +256,29 @@ void add_markers(CLI::App& app) {
       ->expected(0, 1)
       ->default_str(fmt::format("{}", kPlainInnerRatio))
       ->type_name("RATIO");
+  auto* board = which->add_flag("--board", options->board,
+                                "The board that roundel calibrate camera wants, on one sheet");
   which->require_option(1);
+  command->add_option("--columns", options->columns, "Of the board")
+      ->needs(board)
+      ->capture_default_str();
+  command->add_option("--rows", options->rows, "Of the board")->needs(board)->capture_default_str();
+  command
+      ->add_option("--spacing", options->spacing_m,
+                   "Of the board, between the centres of neighbours, metres; as large as fits if "
+                   "left out")
+      ->needs(board)
+      ->check(CLI::Range(kMinDiameter, kMaxDiameter))
+      ->type_name("METRES");
   command->add_option("--bits", options->bits, "WhyCode bits, 2 to 16")->capture_default_str();
   command->add_option("--hamming", options->hamming, "Minimum Hamming distance of the set, 1 to 4")
       ->capture_default_str();
-  command->add_option("--diameter", options->diameter_m, "Outer black diameter, metres")
+  command
+      ->add_option("--diameter", options->given_diameter_m,
+                   "Outer black diameter, metres; on a board 0.75 of the spacing if left out")
       ->check(CLI::Range(kMinDiameter, kMaxDiameter))
-      ->capture_default_str();
+      ->default_str(fmt::format("{}", kDefaultDiameter))
+      ->type_name("METRES");
   command->add_option("--copies", options->copies, "Of every marker")
       ->check(CLI::Range(1, kMaxCopies))
       ->capture_default_str();

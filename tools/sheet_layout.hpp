@@ -21,6 +21,12 @@ struct SheetLayout {
 // A4, A3, Letter (any case), upright; std::invalid_argument that lists the names for others.
 PageSize paper_size(const std::string& name);
 
+// Side of the largest cells of which so many fit the page beside the strip, mm.
+double largest_cell(PageSize page, int columns, int rows);
+
+// So many cells in the middle of the page. They must fit.
+SheetLayout lay_out_grid(PageSize page, int columns, int rows, double cell_mm);
+
 // Throws std::invalid_argument, with the largest diameter that would do, where not one marker of
 // this outer black diameter fits the paper.
 SheetLayout lay_out_sheet(const std::string& paper, double diameter_mm);

@@ -3,17 +3,23 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "calibration/board.hpp"
 #include "calibration/camera_file.hpp"
 #include "core/necklace.hpp"
 #include "daemon/file_pointer.hpp"
 #include "daemon/image_file.hpp"
 #include "simulator/arena.hpp"
+#include "simulator/arena_camera.hpp"
+#include "simulator/random.hpp"
+#include "simulator/renderer.hpp"
+#include "tools/board_scene.hpp"
 #include "tools/commands.hpp"
 #include "tools/frame_output.hpp"
 #include "tools/id_list.hpp"
@@ -27,8 +33,9 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 struct SimulateOptions {
   ArenaOptions arena;
-  std::int64_t frames = 300;
+  std::optional<std::int64_t> frames;
   std::string ids;  // of the robots; empty: 1, 2, 3, ...
+  bool board = false;
   bool no_corners = false, coded_corners = false, no_clutter = false;
   double tilt_deg = 0, turn_deg = 0, gradient_deg = 0, shadow_deg = 30;
   std::string camera_file, camera_out, truth_file, output;
@@ -99,9 +106,63 @@ Arena make_arena(const SimulateOptions& options) {
   }
 }
 
+constexpr std::int64_t kArenaFrames = 300, kBoardFrames = 15, kMaxBoardFrames = 10000;
+
+std::int64_t frame_count(const SimulateOptions& options) {
+  return options.frames.value_or(options.board ? kBoardFrames : kArenaFrames);
+}
+
+// What is rendered, frame by frame, and what is true of it.
+struct Rendering {
+  CameraModel camera;
+  std::function<void(std::int64_t, GreyImage&)> render;
+  std::function<FrameTruth(std::int64_t)> truth;
+};
+
+Rendering arena_rendering(const SimulateOptions& options) {
+  auto arena = std::make_shared<Arena>(make_arena(options));
+  return {arena->camera(),
+          [arena](std::int64_t frame, GreyImage& out) { arena->render(frame, out); },
+          [arena](std::int64_t frame) { return arena->truth(frame); }};
+}
+
+// Views of the calibration board instead of an arena: every frame shows it somewhere else.
+Rendering board_rendering(const SimulateOptions& options) {
+  try {
+    const ArenaOptions arena = checked(arena_options(options));
+    const CameraModel camera = arena_camera(arena, arena_in_ceiling_camera(arena));
+    Board board;
+    board.bits = arena.bits;
+    board.hamming = arena.hamming;
+    checked(board);
+    if (frame_count(options) > kMaxBoardFrames)
+      throw UsageError(fmt::format("at most {} views of the board", kMaxBoardFrames));
+    const auto poses =
+        board_poses(board, camera, static_cast<int>(frame_count(options)), options.arena.seed);
+    auto renderer = std::make_shared<Renderer>(camera, arena.imaging);
+    const auto pose = [poses](std::int64_t frame) -> const Pose& {
+      return poses[static_cast<std::size_t>(frame)];
+    };
+    const double rate = arena.frame_rate;
+    return {camera,
+            [=](std::int64_t frame, GreyImage& out) {
+              renderer->render(board_scene(board, pose(frame)),
+                               derived_seed(arena.seed, static_cast<std::uint64_t>(frame)), out);
+            },
+            [=](std::int64_t frame) {
+              FrameTruth truth = board_truth(board, camera, pose(frame));
+              truth.frame = frame;
+              truth.time_s = static_cast<double>(frame) / rate;
+              return truth;
+            }};
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+}
+
 void simulate(const SimulateOptions& options) {
-  Arena arena = make_arena(options);
-  const CameraModel& camera = arena.camera();
+  const Rendering rendering = options.board ? board_rendering(options) : arena_rendering(options);
+  const CameraModel& camera = rendering.camera;
   if (!options.camera_out.empty()) {
     write_camera_file(options.camera_out, {"simulator", camera});
   }
@@ -110,12 +171,12 @@ void simulate(const SimulateOptions& options) {
     truth.emplace(options.truth_file);
   }
   // What a reader in a pipe looks up is there before the frame that makes it look: camera, truth.
-  FrameOutput output(options.output, camera.width, camera.height, arena.options().frame_rate);
+  FrameOutput output(options.output, camera.width, camera.height, options.arena.frame_rate);
   GreyImage frame;
-  for (std::int64_t i = 0; i < options.frames; ++i) {
-    arena.render(i, frame);
+  for (std::int64_t i = 0; i < frame_count(options); ++i) {
+    rendering.render(i, frame);
     if (truth) {
-      truth->write(json_line(truth_json(arena.truth(i))));
+      truth->write(json_line(truth_json(rendering.truth(i))));
     }
     output.write(frame.view());
   }
@@ -232,7 +293,11 @@ void add_simulate(CLI::App& app) {
       ->type_name("PATH");
   command->add_option("--frames", options->frames, "How many")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
-      ->capture_default_str();
+      ->type_name("N")
+      ->default_str(fmt::format("{}, or {} with --board", kArenaFrames, kBoardFrames));
+  command->add_flag("--board", options->board,
+                    "Views of the board of roundel markers --board instead of an arena; it is at "
+                    "another place in every frame");
   command->add_option("--seed", options->arena.seed, "Of motion, clutter and noise")
       ->capture_default_str();
   command->add_option("--camera-out", options->camera_out, "Writes the intrinsics (YAML)")

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calibration/bundle_adjustment.hpp"
+
+namespace roundel {
+
+// Huber's loss of a squared residual, and the weight that it gives the residual's equations.
+// Scale 0: plain squares.
+struct Loss {
+  double cost, weight;
+};
+Loss huber(double squared, double scale);
+
+// The unknowns that all views share: the intrinsics, then three offsets a marker.
+Eigen::VectorXd shared_values(const BundleState& state, const BundleOptions& options);
+bool is_estimated(Eigen::Index shared, const BundleOptions& options);
+// Weights of the shared unknowns' squares beside the whitened residuals'.
+Eigen::VectorXd prior_weights(const BundleOptions& options);
+
+// The normal equations of the adjustment: [A B; B' C] with one block B, C a view.
+class BundleEquations {
+ public:
+  // The poses eliminated: (A - sum B C^-1 B') x = right side.
+  struct Reduced {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd side;
+    std::vector<Eigen::LDLT<Eigen::Matrix<double, 6, 6>>> poses;
+  };
+
+  // False if a point lies behind the camera.
+  bool assemble(std::span<const BoardView> views, const BundleState& state,
+                const BundleOptions& options);
+
+  // With the diagonal grown by a share. Nothing if a view does not determine its pose.
+  std::optional<Reduced> reduced(double damping) const;
+
+  // The step of a view's pose that belongs to a step of the shared unknowns.
+  PoseStep pose_step(const Reduced& reduced, std::size_t view,
+                     const Eigen::VectorXd& shared_step) const;
+
+ private:
+  void add(const BoardPoint& point, const BoardProjection& projection, std::size_t view,
+           const BundleOptions& options);
+
+  Eigen::MatrixXd a_;
+  Eigen::VectorXd a_side_;
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, 6>> b_;
+  std::vector<Eigen::Matrix<double, 6, 6>> c_;
+  std::vector<PoseStep> c_side_;
+};
+
+}  // namespace roundel

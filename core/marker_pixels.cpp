@@ -1,0 +1,159 @@
+#include "core/marker_pixels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/marker_geometry.hpp"
+
+namespace roundel {
+
+namespace {
+
+constexpr double kInnerLimit = 0.8;  // pixels inside see the inner edges, outside the outer rim
+constexpr double kMaxOutside = 0.2;  // of the radius: inside the white margin
+constexpr int kMaxPixels = 6000;     // larger markers are thinned out
+
+// Concentric shares of an ellipse, cut by image rows.
+class EllipseRows {
+ public:
+  explicit EllipseRows(const Ellipse& e) : u_(e.u) {
+    const double c = std::cos(e.angle), s = std::sin(e.angle);
+    const double aa = 1 / (e.a * e.a), bb = 1 / (e.b * e.b);
+    square_ = c * c * aa + s * s * bb;
+    mixed_ = c * s * (aa - bb);
+    constant_ = s * s * aa + c * c * bb;
+  }
+
+  struct Span {
+    double u0, u1;  // empty when u1 < u0
+  };
+
+  // What the row `dv` below the centre has inside the ellipse shrunk to `share`.
+  Span inside(double dv, double share) const {
+    const double b = mixed_ * dv;
+    const double root = b * b - square_ * (constant_ * dv * dv - share * share);
+    if (share <= 0 || root < 0) return {u_, u_ - 1};
+    const double half = std::sqrt(root) / square_, middle = u_ - b / square_;
+    return {middle - half, middle + half};
+  }
+
+ private:
+  double u_, square_ = 0, mixed_ = 0, constant_ = 0;
+};
+
+}  // namespace
+
+struct MarkerPixels::Row {
+  const std::uint8_t* luma;  // of pixel u = 0
+  std::ptrdiff_t pixel_stride;
+  double centre_u;
+  std::array<float, 4> x, y;  // cubic polynomials in u - centre_u
+};
+
+void MarkerPixels::Columns::make_room(int more) {
+  const auto needed = static_cast<std::size_t>(used + more + kPixelBlock);
+  if (x.size() >= needed) return;
+  for (auto* column : {&x, &y, &grey, &weight}) column->resize(2 * needed);
+}
+
+void MarkerPixels::Columns::fill_up() {
+  if (used == 0) return;
+  make_room(kPixelBlock);
+  const auto last = static_cast<std::size_t>(used - 1);
+  for (auto i = static_cast<std::size_t>(used); i % kPixelBlock != 0; ++i) {
+    x[i] = x[last];
+    y[i] = y[last];
+    grey[i] = grey[last];
+    weight[i] = 0;
+  }
+}
+
+PixelColumns MarkerPixels::Columns::view() const {
+  const int filled = (used + kPixelBlock - 1) / kPixelBlock * kPixelBlock;
+  return {x.data(), y.data(), grey.data(), weight.data(), filled};
+}
+
+void MarkerPixels::take(const Row& row, const ResponseCurve& response, int u0, int u1, int stride,
+                        Columns& columns) {
+  if (u1 < u0) return;
+  const int count = (u1 - u0) / stride + 1;
+  columns.make_room(count);
+  const auto start = static_cast<std::size_t>(columns.used);
+  float* x = columns.x.data() + start;
+  float* y = columns.y.data() + start;
+  float* grey = columns.grey.data() + start;
+  float* weight = columns.weight.data() + start;
+  const auto first = static_cast<float>(u0 - row.centre_u);
+  for (int i = 0; i < count; ++i) {
+    const float d = first + static_cast<float>(i * stride);
+    x[i] = row.x[0] + d * (row.x[1] + d * (row.x[2] + d * row.x[3]));
+    y[i] = row.y[0] + d * (row.y[1] + d * (row.y[2] + d * row.y[3]));
+  }
+  const std::uint8_t* luma = row.luma + u0 * row.pixel_stride;
+  const std::ptrdiff_t step = stride * row.pixel_stride;
+  for (int i = 0; i < count; ++i, luma += step) {
+    grey[i] = response.light(*luma);
+    weight[i] = response.slope(*luma);
+  }
+  columns.used += count;
+}
+
+bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
+                        const ResponseCurve& response, const Ellipse& ellipse, double reach_px) {
+  const double outside = std::min(kMaxOutside * ellipse.b, reach_px);
+  const double a = ellipse.a + outside, b = ellipse.b + outside;
+  const double cosine = std::cos(ellipse.angle), sine = std::sin(ellipse.angle);
+  const double half_u = std::hypot(a * cosine, b * sine), half_v = std::hypot(a * sine, b * cosine);
+  const auto patch = LensPatch::make(camera, {ellipse.u, ellipse.v}, std::max(half_u, half_v));
+  if (!patch) return false;
+  middle_ = patch->normalise(0, 0);
+  pixel_slope_ = patch->slope();
+
+  const int v0 = std::max(0, static_cast<int>(std::ceil(ellipse.v - half_v)));
+  const int v1 = std::min(frame.height - 1, static_cast<int>(std::floor(ellipse.v + half_v)));
+  const double area = std::numbers::pi * a * b;
+  const int stride = std::max(1, static_cast<int>(std::lround(std::sqrt(area / kMaxPixels))));
+  // Bands around the edges, in shares of the outline's radius.
+  const double reach = reach_px / ellipse.b;
+  const double rim_low = std::max(kInnerLimit, 1 - reach), rim_high = 1 + outside / ellipse.b;
+  const double inner_low = std::max(0.0, kPlainInnerRatioMin - reach);
+  const double inner_high = std::min(kInnerLimit, kCodeOuterRatio + reach);
+
+  const EllipseRows rows(ellipse);
+  outer_.used = inner_.used = 0;
+  const int last_u = frame.width - 1;
+  for (int v = v0; v <= v1; v += stride) {
+    const double dv = v - ellipse.v;
+    Row row{frame.row(v), frame.pixel_stride, ellipse.u, {}, {}};
+    const Eigen::Matrix<double, 2, 4> cubic = patch->row(dv);
+    for (int k = 0; k < 4; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      row.x[i] = static_cast<float>(cubic(0, k) - (k == 0 ? middle_.x() : 0));
+      row.y[i] = static_cast<float>(cubic(1, k) - (k == 0 ? middle_.y() : 0));
+    }
+    const auto take_band = [&](double low, double high, Columns& columns) {
+      const EllipseRows::Span whole = rows.inside(dv, high);
+      if (whole.u1 < whole.u0) return;
+      const int first = std::max(0, static_cast<int>(std::ceil(whole.u0)));
+      const int last = std::min(last_u, static_cast<int>(std::floor(whole.u1)));
+      const EllipseRows::Span hole = rows.inside(dv, low);
+      if (hole.u1 < hole.u0) {
+        take(row, response, first, last, stride, columns);
+        return;
+      }
+      const int before = std::min(last, static_cast<int>(std::floor(hole.u0)));
+      const int after = std::max(first, static_cast<int>(std::ceil(hole.u1)));
+      take(row, response, first, before, stride, columns);
+      take(row, response, std::max(after, before + 1), last, stride, columns);
+    };
+    take_band(rim_low, rim_high, outer_);
+    take_band(inner_low, inner_high, inner_);
+  }
+  if (outer_.used < 2 * kPhotometricUnknowns || inner_.used == 0) return false;
+  outer_.fill_up();
+  inner_.fill_up();
+  return true;
+}
+
+}  // namespace roundel

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/camera_model.hpp"
+#include "core/lens_patch.hpp"
+#include "core/luma_view.hpp"
+#include "core/marker.hpp"
+#include "core/photometric_kernel.hpp"
+#include "core/response_curve.hpp"
+
+namespace roundel {
+
+// The pixels of a marker's image that lie near an edge of its pattern, with the lens and the
+// response curve taken out: those on the outer rim and those around the inner edges. What is flat
+// tells nothing new. Memory is kept from marker to marker.
+class MarkerPixels {
+ public:
+  // Takes the pixels within `reach_px` of where a marker under `ellipse` has edges. False when
+  // there are too few or where the lens model ends.
+  bool load(const LumaView& frame, const CameraModel& camera, const ResponseCurve& response,
+            const Ellipse& ellipse, double reach_px);
+
+  PixelColumns outer() const { return outer_.view(); }
+  PixelColumns inner() const { return inner_.view(); }
+  int outer_count() const { return outer_.used; }  // filling not counted
+  int inner_count() const { return inner_.used; }
+
+  // Normalised point that the columns are relative to, and d(normalised)/d(pixel) there.
+  const Eigen::Vector2d& middle() const { return middle_; }
+  const Eigen::Matrix2d& pixel_slope() const { return pixel_slope_; }
+
+ private:
+  struct Columns {
+    std::vector<float> x, y, grey, weight;
+    int used = 0;
+    void make_room(int more);
+    void fill_up();
+    PixelColumns view() const;
+  };
+  struct Row;
+
+  // Appends the pixels u0, u0 + stride, ... up to u1 of a row.
+  static void take(const Row& row, const ResponseCurve& response, int u0, int u1, int stride,
+                   Columns& columns);
+
+  Columns outer_, inner_;
+  Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d pixel_slope_ = Eigen::Matrix2d::Identity();
+};
+
+}  // namespace roundel

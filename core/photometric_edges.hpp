@@ -1,0 +1,237 @@
+#pragma once
+
+#include "core/photometric_kernel.hpp"
+#include "core/simd.hpp"
+
+// How bright the model expects a pixel to be, eight pixels at once: edges of circles and teeth in
+// the marker's plane, seen through perspective and blur (METHOD.md section 6).
+namespace roundel::photometric {
+
+using simd::Float8;
+using simd::Int8;
+using simd::splat;
+
+// Value and slope of the normal distribution function: how a straight edge looks after Gaussian
+// blur.
+struct Edge {
+  Float8 value, slope;
+};
+
+// Abramowitz and Stegun 26.2.17, absolute error below 1e-7.
+ROUNDEL_INLINE Edge edge_profile(const Float8& d) {
+  const Float8 x = simd::min(simd::abs(d), splat(4.8F));
+  const Float8 slope = 0.39894228F * simd::exp_minus(0.5F * x * x);
+  const Float8 t = 1 / (1 + 0.2316419F * x);
+  Float8 tail = -1.821255978F + t * 1.330274429F;
+  tail = 1.781477937F + t * tail;
+  tail = -0.356563782F + t * tail;
+  tail = slope * t * (0.319381530F + t * tail);
+  return {simd::select(d > 0, 1 - tail, tail), slope};
+}
+
+// A pixel in the marker's plane.
+struct PlanePoint {
+  Float8 x, y, radius, cosine, sine;
+  Float8 radius_u, radius_v;  // gradient of the radius in the image, plane units a pixel
+  Float8 arc_u, arc_v;        // gradient of the way along the circle
+};
+
+ROUNDEL_INLINE PlanePoint plane_point(const PhotometricModel& m, const Float8& nx,
+                                      const Float8& ny) {
+  PlanePoint p{};
+  const Float8 depth = 1 / (m.at[2] + m.by_x[2] * nx + m.by_y[2] * ny);
+  p.x = (m.at[0] + m.by_x[0] * nx + m.by_y[0] * ny) * depth;
+  p.y = (m.at[1] + m.by_x[1] * nx + m.by_y[1] * ny) * depth;
+  p.radius = simd::sqrt(p.x * p.x + p.y * p.y) + 1e-9F;
+  const Float8 per_radius = 1 / p.radius;
+  p.cosine = p.x * per_radius;
+  p.sine = p.y * per_radius;
+  const Float8 xx = (m.by_x[0] - p.x * m.by_x[2]) * depth,
+               xy = (m.by_y[0] - p.x * m.by_y[2]) * depth;
+  const Float8 yx = (m.by_x[1] - p.y * m.by_x[2]) * depth,
+               yy = (m.by_y[1] - p.y * m.by_y[2]) * depth;
+  const auto& s = m.pixel_slope;
+  const Float8 radius_x = p.cosine * xx + p.sine * yx, radius_y = p.cosine * xy + p.sine * yy;
+  const Float8 arc_x = p.cosine * yx - p.sine * xx, arc_y = p.cosine * yy - p.sine * xy;
+  p.radius_u = radius_x * s[0] + radius_y * s[2];
+  p.radius_v = radius_x * s[1] + radius_y * s[3];
+  p.arc_u = arc_x * s[0] + arc_y * s[2];
+  p.arc_v = arc_x * s[1] + arc_y * s[3];
+  return p;
+}
+
+// An edge as it lies in the image: its scale and what the blur is across and along it.
+struct Direction {
+  Float8 pixels;                // a unit of the plane across the edge, in pixels
+  Float8 per_pixel;             // blurs a pixel, across
+  Float8 along;                 // variance of the blur along the edge over its deviation across
+  Float8 stretch_u, stretch_d;  // d(log of the blur across) by the unknowns
+};
+
+ROUNDEL_INLINE Direction direction(const PhotometricModel& m, const Float8& grad_u,
+                                   const Float8& grad_v) {
+  Direction e{};
+  const Float8 uu = grad_u * grad_u, vv = grad_v * grad_v;
+  const Float8 per_square = 1 / (uu + vv);
+  e.pixels = simd::sqrt(per_square);
+  const Float8 u = (uu - vv) * per_square, d = 2 * grad_u * grad_v * per_square;
+  const Float8 across = 1 + m.stretch_u * u + m.stretch_d * d;  // over the mean variance
+  const Float8 per_across = 1 / across, sharpness = simd::sqrt(per_across);
+  e.per_pixel = sharpness * (1 / m.blur);
+  e.along = (m.blur * (2 - across)) * sharpness;
+  e.stretch_u = 0.5F * u * per_across;
+  e.stretch_d = 0.5F * d * per_across;
+  return e;
+}
+
+// What the model expects of a pixel, and its derivatives.
+struct Expected {
+  Float8 bright;             // share of the bright level
+  Float8 by_radius, by_arc;  // by an outward, a counter-clockwise shift of the pixel, plane units
+  Float8 by_shift, by_blur, by_stretch_u, by_stretch_d, by_inner;
+};
+
+// Distance of a pixel from a rim in blurs, positive outside, and its derivatives by the blur's
+// logarithm: all of it, and just what is across the rim (what is along it is the less for it).
+struct RimDistance {
+  Float8 d, by_log_blur, by_log_across;
+};
+
+ROUNDEL_INLINE RimDistance rim_distance(const PhotometricModel& m, const PlanePoint& p,
+                                        const Direction& e, float rim, float dark_outward) {
+  // Blur makes a curved edge recede toward its centre by half of its variance along the edge over
+  // the radius of curvature. A circle seen at a slant is flat at its near and far side.
+  const Float8 shrink = p.radius_u * p.arc_v - p.radius_v * p.arc_u;
+  const Float8 squeezed = e.pixels * e.pixels * e.pixels * (1 / rim);
+  const Float8 recession = 0.5F * e.along * shrink * shrink * squeezed;
+  // The radius does not grow evenly along the normal where the image cuts across circles.
+  const Float8 across = p.radius_u * p.arc_u + p.radius_v * p.arc_v;
+  const Float8 first = (p.radius - rim) * e.pixels;
+  const Float8 uneven = 0.5F * across * across * squeezed;
+  const Float8 straight = (first + uneven * first * first - dark_outward * m.shift) * e.per_pixel;
+  return {straight + recession, recession - straight, -3 * recession - straight};
+}
+
+ROUNDEL_INLINE Expected outer_rim(const PhotometricModel& m, const PlanePoint& p) {
+  const Direction e = direction(m, p.radius_u, p.radius_v);
+  const RimDistance rim = rim_distance(m, p, e, 1.0F, 1.0F);
+  const Edge edge = edge_profile(rim.d);
+  const Float8 by_pixel = edge.slope * e.per_pixel;
+  Expected x{};
+  x.bright = edge.value;
+  x.by_radius = by_pixel * e.pixels;
+  x.by_shift = -by_pixel;
+  x.by_blur = edge.slope * rim.by_log_blur;
+  const Float8 by_across = edge.slope * rim.by_log_across;
+  x.by_stretch_u = by_across * e.stretch_u;
+  x.by_stretch_d = by_across * e.stretch_d;
+  return x;
+}
+
+ROUNDEL_INLINE Expected plain_centre(const PhotometricModel& m, const PlanePoint& p) {
+  const Direction e = direction(m, p.radius_u, p.radius_v);
+  const RimDistance rim = rim_distance(m, p, e, m.inner, -1.0F);
+  const Edge edge = edge_profile(-rim.d);
+  const Float8 by_pixel = edge.slope * e.per_pixel;
+  Expected x{};
+  x.bright = edge.value;
+  x.by_inner = by_pixel * e.pixels;
+  x.by_radius = -x.by_inner;
+  x.by_shift = -by_pixel;
+  x.by_blur = -edge.slope * rim.by_log_blur;
+  const Float8 by_across = -edge.slope * rim.by_log_across;
+  x.by_stretch_u = by_across * e.stretch_u;
+  x.by_stretch_d = by_across * e.stretch_d;
+  return x;
+}
+
+// How the ring's teeth look along the arc, without its rims; distances in blurs.
+struct Teeth {
+  Float8 value;                      // share of the bright level
+  Float8 by_arc, by_shift, by_blur;  // by a distance along the arc, the shift, the blur's logarithm
+};
+
+// Adds the border of two half-teeth. `distance` is that from it into the half-tooth at hand, `step`
+// the colour beyond it less the colour on this side, `forward` +1 where the border lies at a larger
+// angle. Dark grows over bright: a border moves away from its darker side.
+ROUNDEL_INLINE void add_border(const Float8& shift, const Float8& distance, const Float8& step,
+                               float forward, Teeth& teeth) {
+  const Edge edge = edge_profile(-(distance + step * shift));
+  const Float8 height = step * edge.slope;
+  teeth.value += step * edge.value;
+  teeth.by_arc += forward * height;
+  teeth.by_shift -= step * height;
+  teeth.by_blur += height * distance;
+}
+
+ROUNDEL_INLINE Teeth teeth_along(const PhotometricModel& m, const PlanePoint& p, const Direction& e,
+                                 const Float8& across) {
+  const float halves = static_cast<float>(m.halves);
+  const Float8 position = simd::turn_of(p.x, p.y) * halves;
+  Int8 k = __builtin_convertvector(position, Int8);
+  k = k >= m.halves ? k - m.halves : k;
+  const Float8 within = position - __builtin_convertvector(k, Float8);
+  const auto colour_at = [&](std::size_t neighbour) {
+    const Int8 word = Int8{} + m.colours[neighbour];
+    return __builtin_convertvector((word >> k) & 1, Float8);
+  };
+  const float half_angle = 6.2831853F / halves;
+  const Float8 blurs_per_arc = p.radius * e.pixels * e.per_pixel;
+  // What the pixel's own gradient gets wrong for a border some angle away.
+  const Float8 askew = across * e.pixels * e.pixels;
+  // Distance to a straight border: the sine, by its series (the angle is below one and a half
+  // half-teeth).
+  const auto distance = [&](const Float8& angle, float forward) {
+    const Float8 a2 = angle * angle;
+    const Float8 sine = angle * (1 + a2 * (-1 / 6.0F + a2 * (1 / 120.0F + a2 * (-1 / 5040.0F))));
+    return blurs_per_arc * sine * (1 + forward * askew * angle);
+  };
+  const Float8 shift = m.shift * e.per_pixel;
+  const Float8 colour = colour_at(2), before = colour_at(1), after = colour_at(3);
+  const Float8 to_before = within * half_angle, to_after = (1 - within) * half_angle;
+  Teeth teeth{colour, splat(0), splat(0), splat(0)};
+  add_border(shift, distance(to_before, -1), before - colour, -1, teeth);
+  add_border(shift, distance(to_after, 1), after - colour, 1, teeth);
+  // The borders behind those show only where teeth are narrow.
+  constexpr float kFar = 3.0F;  // blurs
+  if (simd::any(blurs_per_arc * half_angle < kFar)) {
+    add_border(shift, distance(to_before + half_angle, -1), colour_at(0) - before, -1, teeth);
+    add_border(shift, distance(to_after + half_angle, 1), colour_at(4) - after, 1, teeth);
+  }
+  return teeth;
+}
+
+ROUNDEL_INLINE Expected code_ring(const PhotometricModel& m, const PlanePoint& p) {
+  const Direction rim = direction(m, p.radius_u, p.radius_v);
+  const Direction border = direction(m, p.arc_u, p.arc_v);
+  const Float8 across = p.radius_u * p.arc_u + p.radius_v * p.arc_v;
+  const RimDistance inner = rim_distance(m, p, rim, m.inner, -1.0F);
+  const RimDistance outer = rim_distance(m, p, rim, float(kCodeOuterRatio), -1.0F);
+  const Edge centre = edge_profile(-inner.d), ring = edge_profile(-outer.d);
+  const Teeth teeth = teeth_along(m, p, border, across);
+
+  const Float8 centre_part = 1 - ring.value * teeth.value;
+  const Float8 ring_part = (1 - centre.value) * teeth.value;
+  const Float8 tooth_part = (1 - centre.value) * ring.value;
+  // Where rims and borders do not cross at right angles in the image, blur mixes them otherwise
+  // than a product does (the bivariate normal distribution, to first order in the correlation).
+  const Float8 askew = across * rim.pixels * border.pixels * teeth.by_arc *
+                       (centre.slope * ring.value - ring.slope * (1 - centre.value));
+  Expected x{};
+  x.bright = centre.value + tooth_part * teeth.value + askew;
+  const Float8 by_pixel = -(centre.slope * centre_part + ring.slope * ring_part) * rim.per_pixel;
+  const Float8 rims_by_blur = -(centre.slope * inner.by_log_blur * centre_part +
+                                ring.slope * outer.by_log_blur * ring_part);
+  const Float8 rims_by_across = -(centre.slope * inner.by_log_across * centre_part +
+                                  ring.slope * outer.by_log_across * ring_part);
+  const Float8 teeth_by_blur = teeth.by_blur * tooth_part;
+  x.by_radius = by_pixel * rim.pixels;
+  x.by_arc = teeth.by_arc * tooth_part * border.pixels * border.per_pixel;
+  x.by_shift = by_pixel + teeth.by_shift * tooth_part * border.per_pixel;
+  x.by_blur = rims_by_blur + teeth_by_blur;
+  x.by_stretch_u = rims_by_across * rim.stretch_u + teeth_by_blur * border.stretch_u;
+  x.by_stretch_d = rims_by_across * rim.stretch_d + teeth_by_blur * border.stretch_d;
+  return x;
+}
+
+}  // namespace roundel::photometric

@@ -1,0 +1,51 @@
+#include "core/response_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace roundel {
+
+void ResponseCurve::fill_slopes() {
+  for (std::size_t k = 0; k < 256; ++k) {
+    const std::size_t below = k > 0 ? k - 1 : 0, above = k < 255 ? k + 1 : 255;
+    slope_[k] = static_cast<float>(above - below) / (light_[above] - light_[below]);
+  }
+}
+
+ResponseCurve ResponseCurve::linear() {
+  return power(1);
+}
+
+ResponseCurve ResponseCurve::srgb() {
+  ResponseCurve curve;
+  for (std::size_t k = 0; k < 256; ++k) {
+    const double x = static_cast<double>(k) / 255;
+    curve.light_[k] =
+        static_cast<float>(255 * (x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4)));
+  }
+  curve.fill_slopes();
+  return curve;
+}
+
+ResponseCurve ResponseCurve::power(double gamma) {
+  if (!(gamma >= 0.2 && gamma <= 5)) {
+    throw std::invalid_argument("the response curve's gamma must be 0.2 to 5");
+  }
+  ResponseCurve curve;
+  for (std::size_t k = 0; k < 256; ++k) {
+    curve.light_[k] = static_cast<float>(255 * std::pow(static_cast<double>(k) / 255, gamma));
+  }
+  curve.fill_slopes();
+  return curve;
+}
+
+double ResponseCurve::light(double grey) const {
+  const double level = std::clamp(grey, 0.0, 255.0);
+  const auto below = static_cast<std::size_t>(std::min(level, 254.0));
+  const double part = level - static_cast<double>(below);
+  return (1 - part) * static_cast<double>(light_[below]) +
+         part * static_cast<double>(light_[below + 1]);
+}
+
+}  // namespace roundel

@@ -1,0 +1,314 @@
+#include "daemon/capture/camera_source.hpp"
+
+#include <fmt/format.h>
+#include <linux/videodev2.h>
+#include <sys/epoll.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+#include "daemon/log.hpp"
+
+namespace roundel {
+namespace {
+
+constexpr std::int64_t kFirstPauseNs = 20'000'000;
+constexpr std::int64_t kLongestPauseNs = 2'000'000'000;
+// Cameras need a while for their first frame.
+constexpr std::int64_t kStartPatienceNs = 3'000'000'000;
+constexpr double kPatienceFrames = 4;
+// A larger step in the driver's numbers is no gap but nonsense.
+constexpr std::uint32_t kLargestGap = 100'000;
+
+void add_to_poll(int poll, int descriptor, std::uint32_t events) {
+  epoll_event event{};
+  event.events = events;
+  event.data.fd = descriptor;
+  if (::epoll_ctl(poll, EPOLL_CTL_ADD, descriptor, &event) != 0) {
+    throw std::system_error(errno, std::generic_category(), "epoll");
+  }
+}
+
+// What has happened to the camera itself, from the events of its descriptor.
+struct Happened {
+  bool broken = false;  // an error state, or unplugged
+  bool event = false;   // one of V4L2's
+};
+
+Happened happened_to(int poll, int camera) {
+  std::array<epoll_event, 4> events{};
+  const int count = ::epoll_wait(poll, events.data(), static_cast<int>(events.size()), 0);
+  for (int i = 0; i < count; ++i) {
+    const epoll_event& event = events[static_cast<std::size_t>(i)];
+    if (event.data.fd != camera) continue;
+    return {(event.events & (EPOLLERR | EPOLLHUP)) != 0, (event.events & EPOLLPRI) != 0};
+  }
+  return {};
+}
+
+}  // namespace
+
+CameraSource::CameraSource(const CameraParameters& parameters, const CameraSystem& system)
+    : parameters_(parameters),
+      system_(system),
+      controls_(std::make_shared<CameraControls>(system, parameters.controls)),
+      poll_(::epoll_create1(EPOLL_CLOEXEC)) {
+  if (!poll_) throw std::system_error(errno, std::generic_category(), "epoll");
+  add_to_poll(poll_.get(), watch_.descriptor(), EPOLLIN);
+  add_to_poll(poll_.get(), timer_.descriptor(), EPOLLIN);
+  timer_.arm(monotonic_ns());
+}
+
+std::optional<FrameLease> CameraSource::next() {
+  if (watch_.take() && !camera_) {
+    pause_ns_ = 0;
+    timer_.arm(monotonic_ns());
+  }
+  if (!camera_) {
+    if (timer_.take()) try_to_open();
+    return std::nullopt;
+  }
+  try {
+    const Happened happened = happened_to(poll_.get(), camera_->device->descriptor());
+    if (happened.event && format_changed()) {
+      lose("its picture format has changed");
+      return std::nullopt;
+    }
+    std::optional<FrameLease> lease = take_newest(happened.broken);
+    // A frame counts even if it comes late because we did.
+    if (!lease) check_silence();
+    return lease;
+  } catch (const CameraError& error) {
+    lose(error.what());
+    return std::nullopt;
+  }
+}
+
+void CameraSource::try_to_open() {
+  try {
+    const std::vector<CameraInformation> cameras = system_.cameras();
+    camera_.emplace(open_camera(before_ ? find_again(cameras, *before_)
+                                        : choose_camera(cameras, parameters_.choice)));
+    watch_stream();
+    before_ = camera_->information;
+    controls_->attach(camera_->information.node);
+  } catch (const CameraError& error) {
+    camera_.reset();
+    note_failure(error);
+    schedule_retry();
+  }
+}
+
+// All that is set for a camera is set anew here: it may have been unplugged, and so forgot.
+CameraSource::OpenCamera CameraSource::open_camera(const CameraInformation& information) {
+  const bool multiplanar = information.multiplanar;
+  try {
+    std::unique_ptr<VideoDevice> device = system_.open(information.node);
+    // libv4l2 knows no formats with several planes.
+    if (!multiplanar && !can_be_read(*device, multiplanar)) {
+      device.reset();
+      device = system_.open_converted(information.node);
+    }
+    CameraMode mode = set_mode(*device, multiplanar, parameters_.mode);
+    LumaReader reader(mode.layout, mode.crop);
+    for (std::string& remark : apply_controls(*device, controls_->wanted())) {
+      mode.remarks.push_back("camera.controls: " + remark);
+    }
+    if (mode.remarks != told_remarks_) {
+      for (const std::string& remark : mode.remarks) {
+        log_warning("{}: {}", information.card, remark);
+      }
+      told_remarks_ = mode.remarks;
+    }
+    auto stream = std::make_unique<CaptureStream>(*device, multiplanar, parameters_.buffers);
+    return {information,       std::move(device), std::move(mode), std::move(reader),
+            std::move(stream), FrameClock(),      std::nullopt,    monotonic_ns()};
+  } catch (const CameraError& error) {
+    throw CameraError(fmt::format("{}: {}", describe(information), error.what()));
+  }
+}
+
+bool CameraSource::can_be_read(VideoDevice& device, bool multiplanar) const {
+  if (parameters_.mode.fourcc != 0) return true;  // nothing else will do
+  const std::vector<OfferedFormat> offered = offered_formats(device, multiplanar);
+  return std::any_of(offered.begin(), offered.end(), [](const OfferedFormat& format) {
+    return find_pixel_format(format.fourcc) != nullptr;
+  });
+}
+
+void CameraSource::watch_stream() {
+  v4l2_event_subscription subscription{};
+  subscription.type = V4L2_EVENT_SOURCE_CHANGE;
+  camera_->device->control(VIDIOC_SUBSCRIBE_EVENT, &subscription);  // few drivers know it
+  add_to_poll(poll_.get(), camera_->device->descriptor(), EPOLLIN | EPOLLPRI);
+  timer_.arm(camera_->last_frame_ns + patience_ns());
+}
+
+bool CameraSource::format_changed() {
+  bool changed = false;
+  v4l2_event event{};
+  while (camera_->device->control(VIDIOC_DQEVENT, &event) == 0) {
+    changed |= event.type == V4L2_EVENT_SOURCE_CHANGE &&
+               (event.u.src_change.changes & V4L2_EVENT_SRC_CH_RESOLUTION) != 0;
+  }
+  return changed;
+}
+
+// While a camera is lost the log hears no more, but for one that is there and can't be used.
+void CameraSource::note_failure(const CameraError& error) {
+  const bool absent = dynamic_cast<const CameraAbsent*>(&error) != nullptr;
+  if (state_ == CameraState::kStarting) {
+    if (error.what() != told_ && (told_.empty() || !absent)) {
+      log_warning("no frames yet: {}; waits for the camera", error.what());
+      told_ = error.what();
+    }
+  } else if (!absent && !told_in_vain_ && pause_ns_ >= kLongestPauseNs) {
+    log_warning("the camera is still lost: {}", error.what());
+    told_in_vain_ = true;
+  }
+}
+
+void CameraSource::lose(const std::string& reason) {
+  controls_->attach({});
+  if (state_ == CameraState::kStreaming) {
+    log_warning("camera lost: {}: {}; waits for it", describe(camera_->information), reason);
+    state_ = CameraState::kLost;
+  } else {
+    note_failure(CameraError(fmt::format("{}: {}", describe(camera_->information), reason)));
+  }
+  camera_.reset();  // closed now: otherwise it would come back under another number
+  counts_ += std::exchange(later_, {});
+  schedule_retry();
+}
+
+void CameraSource::schedule_retry() {
+  timer_.arm(monotonic_ns() + pause_ns_);
+  pause_ns_ = std::clamp(2 * pause_ns_, kFirstPauseNs, kLongestPauseNs);
+}
+
+std::int64_t CameraSource::patience_ns() const {
+  if (!camera_->any_frame) return kStartPatienceNs;
+  const double rate = camera_->mode.frame_rate;
+  const double frames_s = rate > 0 ? kPatienceFrames / rate : 0;
+  return static_cast<std::int64_t>(1e9 * std::max(parameters_.timeout_s, frames_s));
+}
+
+// The timer is not set for every frame, only when it strikes.
+void CameraSource::check_silence() {
+  if (!timer_.take()) return;
+  const std::int64_t due_ns = camera_->last_frame_ns + patience_ns();
+  if (monotonic_ns() < due_ns) {
+    timer_.arm(due_ns);
+  } else {
+    throw CameraError(
+        fmt::format("no frame for {:.1f} s", static_cast<double>(patience_ns()) / 1e9));
+  }
+}
+
+std::optional<FrameLease> CameraSource::take_newest(bool broken) {
+  CaptureStream& stream = *camera_->stream;
+  counts_ += std::exchange(later_, {});
+  std::optional<FilledBuffer> newest;
+  std::int64_t number = 0;
+  int ready = 0;
+  while (ready < stream.buffers()) {
+    const std::optional<FilledBuffer> buffer = stream.dequeue();
+    if (!buffer) break;
+    ++ready;
+    const std::int64_t its_number = number_of(*buffer, later_);
+    if (buffer->bytes.empty()) {
+      ++later_.damaged;
+      stream.give_back(buffer->index);
+      continue;
+    }
+    if (newest) {
+      ++later_.newer;
+      stream.give_back(newest->index);
+    }
+    counts_ += std::exchange(later_, {});
+    newest = buffer;
+    number = its_number;
+  }
+  if (broken && ready == 0) throw CameraError("its stream broke off");
+  if (!newest) return std::nullopt;
+  return lend(*newest, number, ready == stream.buffers());
+}
+
+// Gaps in the driver's numbers become gaps in ours. Numbers that stand still or go back are no gap.
+std::int64_t CameraSource::number_of(const FilledBuffer& buffer, DropCounts& drops) {
+  if (camera_->sequence) {
+    const std::uint32_t step = buffer.sequence - *camera_->sequence;  // modulo 2^32, as it wraps
+    if (step > 1 && step <= kLargestGap) {
+      drops.driver += step - 1;
+      next_number_ += step - 1;
+    }
+  }
+  camera_->sequence = buffer.sequence;
+  return next_number_++;
+}
+
+// overrun: the driver had filled all its buffers, and nobody knows how long ago unless its stamps
+// can be trusted.
+std::optional<FrameLease> CameraSource::lend(const FilledBuffer& buffer, std::int64_t number,
+                                             bool overrun) {
+  const TimeStamp arrived = now();
+  const std::optional<CaptureTime> time = camera_->clock.judge(buffer.stamp, arrived);
+  if (!time || (overrun && !camera_->clock.trusted())) {
+    ++counts_.stale;
+    camera_->last_frame_ns = monotonic_ns();  // not the camera's fault
+    camera_->stream->give_back(buffer.index);
+    return std::nullopt;
+  }
+  const std::optional<LumaView> luma = camera_->reader.read(buffer.bytes);
+  const bool in_use = luma && camera_->reader.in_place();
+  if (!in_use) camera_->stream->give_back(buffer.index);
+  if (!luma) {
+    ++counts_.damaged;
+    return std::nullopt;
+  }
+  note_frame();
+  constexpr int kNone = -1;
+  return FrameLease(*this, in_use ? buffer.index : kNone,
+                    {*luma, number, time->captured, time->source});
+}
+
+void CameraSource::give_back(int buffer) {
+  if (buffer >= 0) camera_->stream->give_back(buffer);
+}
+
+void CameraSource::note_frame() {
+  camera_->last_frame_ns = monotonic_ns();
+  if (camera_->any_frame) return;
+  camera_->any_frame = true;
+  timer_.arm(camera_->last_frame_ns + patience_ns());
+  log_info("{} {}", state_ == CameraState::kLost ? "the camera is back:" : "camera", description());
+  state_ = CameraState::kStreaming;
+  pause_ns_ = 0;
+  told_.clear();
+  told_in_vain_ = false;
+}
+
+std::string CameraSource::description() const {
+  if (!camera_) {
+    return before_ ? fmt::format("{}, not there", describe(*before_)) : "a camera, not there yet";
+  }
+  const PixelFormat& format = camera_->mode.layout.format;
+  const std::string rate = camera_->mode.frame_rate > 0
+                               ? fmt::format(" at {:.4g} frames/s", camera_->mode.frame_rate)
+                               : std::string();
+  return fmt::format("{}: {} {}x{}{}, {}{}{}", describe(camera_->information),
+                     fourcc_name(format.fourcc), camera_->mode.layout.width,
+                     camera_->mode.layout.height, rate, how_it_is_read(format),
+                     camera_->mode.emulated ? " after libv4l2's conversion" : "",
+                     camera_->stream->cached() ? ", cached buffers" : "");
+}
+
+std::string CameraSource::explanation_of_drops() const {
+  return fmt::format(
+      "{} lost before they reached roundeld, {} left out for a newer one, {} damaged, {} too old",
+      counts_.driver, counts_.newer, counts_.damaged, counts_.stale);
+}
+
+}  // namespace roundel

@@ -1,0 +1,38 @@
+#include "core/response_curve.hpp"
+
+#include <doctest/doctest.h>
+
+#include <stdexcept>
+
+using namespace roundel;  // NOLINT(google-build-using-namespace)
+
+TEST_CASE("a linear camera's grey levels are the light") {
+  const ResponseCurve curve = ResponseCurve::linear();
+  CHECK(curve.light(std::uint8_t{0}) == 0);
+  CHECK(curve.light(std::uint8_t{128}) == doctest::Approx(128));
+  CHECK(curve.slope(std::uint8_t{200}) == doctest::Approx(1));
+}
+
+TEST_CASE("sRGB's middle grey is a fifth of the light") {
+  const ResponseCurve curve = ResponseCurve::srgb();
+  CHECK(curve.light(std::uint8_t{255}) == doctest::Approx(255));
+  CHECK(curve.light(std::uint8_t{128}) == doctest::Approx(0.2159 * 255).epsilon(0.001));
+  CHECK(curve.light(std::uint8_t{5}) == doctest::Approx(5 / 12.92));
+  // Dark levels are spread out, bright ones pressed together.
+  CHECK(curve.slope(std::uint8_t{2}) == doctest::Approx(12.92).epsilon(0.001));
+  CHECK(curve.slope(std::uint8_t{250}) < 0.6F);
+}
+
+TEST_CASE("between grey levels the light is interpolated") {
+  const ResponseCurve curve = ResponseCurve::power(2);
+  CHECK(curve.light(100.5) ==
+        doctest::Approx(0.5 * (static_cast<double>(curve.light(std::uint8_t{100})) +
+                               static_cast<double>(curve.light(std::uint8_t{101})))));
+  CHECK(curve.light(-3.0) == 0);
+  CHECK(curve.light(300.0) == doctest::Approx(255));
+}
+
+TEST_CASE("a gamma that no camera has is refused") {
+  CHECK_THROWS_AS(ResponseCurve::power(0), std::invalid_argument);
+  CHECK_THROWS_AS(ResponseCurve::power(6), std::invalid_argument);
+}

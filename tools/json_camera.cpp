@@ -1,0 +1,53 @@
+#include "tools/json_camera.hpp"
+
+namespace roundel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json format_json(const OfferedFormat& format) {
+  const PixelFormat* const known = find_pixel_format(format.fourcc);
+  Json json = {{"format", fourcc_name(format.fourcc)},
+               {"description", format.description},
+               {"supported", known != nullptr},
+               {"in_place", known != nullptr && known->reading == Reading::kInPlace},
+               {"sizes", Json::array()}};
+  for (const OfferedSize& size : format.sizes) {
+    json["sizes"].push_back(
+        {{"width", size.width}, {"height", size.height}, {"frame_rates", size.frame_rates}});
+  }
+  return json;
+}
+
+Json control_json(const Control& control) {
+  Json json = {{"name", control.name},
+               {"label", control.label},
+               {"type", std::string(name_of(control.type))},
+               {"value", control.value},
+               {"default", control.default_value},
+               {"minimum", control.minimum},
+               {"maximum", control.maximum},
+               {"step", control.step},
+               {"read_only", control.read_only},
+               {"inactive", control.inactive}};
+  for (const Control::MenuItem& item : control.menu) {
+    json["menu"].push_back({{"value", item.index}, {"name", item.name}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json camera_json(const ListedCamera& camera) {
+  const CameraInformation& information = camera.information;
+  Json json = {{"card", information.card},     {"device", information.node},
+               {"bus", information.bus},       {"serial", information.serial},
+               {"driver", information.driver}, {"links", information.links},
+               {"formats", Json::array()},     {"controls", Json::array()}};
+  for (const OfferedFormat& format : camera.formats) json["formats"].push_back(format_json(format));
+  for (const Control& control : camera.controls) json["controls"].push_back(control_json(control));
+  if (!camera.problem.empty()) json["problem"] = camera.problem;
+  return json;
+}
+
+}  // namespace roundel
