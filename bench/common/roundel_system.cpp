@@ -6,14 +6,18 @@
 
 namespace roundel::bench {
 
-namespace {
-
-DetectorParameters parameters_for(const Experiment& experiment, bool with_code) {
+DetectorParameters roundel_parameters(const Experiment& experiment, bool with_code) {
   DetectorParameters parameters;
   parameters.diameter_m = experiment.diameter_m;
   parameters.bits = with_code ? experiment.bits : 0;
+  if (experiment.response_known) {
+    parameters.response = experiment.imaging.srgb ? ResponseCurve::srgb()
+                                                  : ResponseCurve::power(experiment.imaging.gamma);
+  }
   return parameters;
 }
+
+namespace {
 
 class RoundelSystem : public System {
  public:
@@ -56,7 +60,7 @@ class RoundelDetector final : public RoundelSystem {
  public:
   RoundelDetector(const Experiment& experiment, bool with_code)
       : RoundelSystem(experiment, with_code, false),
-        detector_(parameters_for(experiment, with_code), experiment.camera) {}
+        detector_(roundel_parameters(experiment, with_code), experiment.camera) {}
 
   std::span<const Sighting> look(const LumaView& picture) override {
     return sightings(detector_.detect(picture));
@@ -70,7 +74,7 @@ class RoundelTracker final : public RoundelSystem {
  public:
   RoundelTracker(const Experiment& experiment, bool with_code)
       : RoundelSystem(experiment, with_code, true),
-        tracker_(parameters_for(experiment, with_code), experiment.camera) {}
+        tracker_(roundel_parameters(experiment, with_code), experiment.camera) {}
 
   std::span<const Sighting> look(const LumaView& picture) override {
     return sightings(tracker_.track(picture));

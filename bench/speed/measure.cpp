@@ -6,6 +6,7 @@
 #include <set>
 
 #include "bench/common/painter.hpp"
+#include "bench/common/roundel_system.hpp"
 #include "bench/speed/stopwatch.hpp"
 #include "core/tracker.hpp"
 #include "simulator/noise.hpp"
@@ -47,7 +48,7 @@ class Series {
 };
 
 Tracker tracker_of(const Experiment& experiment) {
-  return {parameters_of(experiment), experiment.camera};
+  return {roundel_parameters(experiment, true), experiment.camera};
 }
 
 std::size_t with_id(std::span<const Sighting> sightings) {
@@ -66,13 +67,6 @@ Look follow(Tracker& tracker, const GreyImage& picture) {
 }
 
 }  // namespace
-
-DetectorParameters parameters_of(const Experiment& experiment) {
-  DetectorParameters parameters;
-  parameters.diameter_m = experiment.diameter_m;
-  parameters.bits = experiment.bits;
-  return parameters;
-}
 
 Timings time_roundel(const Experiment& experiment) {
   Painter painter(experiment, whycode_print(experiment));

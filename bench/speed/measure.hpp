@@ -2,12 +2,8 @@
 
 #include "bench/common/contender.hpp"
 #include "bench/speed/timing.hpp"
-#include "core/detector_parameters.hpp"
 
 namespace roundel::bench {
-
-// The tracker as the daemon makes it for an experiment.
-DetectorParameters parameters_of(const Experiment& experiment);
 
 // Roundel on all views of an experiment: following frames, and every so often the first frame of a
 // tracker that knows nothing.

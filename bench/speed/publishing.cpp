@@ -1,4 +1,5 @@
 #include "bench/common/painter.hpp"
+#include "bench/common/roundel_system.hpp"
 #include "bench/speed/measure.hpp"
 #include "bench/speed/stopwatch.hpp"
 #include "core/tracker.hpp"
@@ -9,7 +10,7 @@ namespace roundel::bench {
 Timings time_publishing(const Experiment& experiment, const std::string& lcm_url) {
   constexpr int kWarmUp = 20;
   Painter painter(experiment, whycode_print(experiment));
-  Tracker tracker(parameters_of(experiment), experiment.camera);
+  Tracker tracker(roundel_parameters(experiment, true), experiment.camera);
   Publisher publisher(open_lcm(lcm_url, LcmUse::kSend), {.camera = "bench"});
   std::vector<double> publishing;
   GreyImage picture;
