@@ -50,6 +50,7 @@ Timings measure_all(const Options& options) {
     }
     std::move(some.begin(), some.end(), std::back_inserter(all));
   };
+  add(time_roundel(floor_scene(1, few)));
   for (const int markers : {7, 30, 100}) {
     for (const Experiment& scene : {floor_scene(markers, frames), clean_scene(markers, frames)}) {
       add(time_roundel(scene));
@@ -63,7 +64,6 @@ Timings measure_all(const Options& options) {
   add(time_missing(seven));
   add(time_light_drop(seven));
   add(time_jumps(seven));
-  add(time_roundel(floor_scene(1, few)));
   for (const int markers : {1, 3, 10, 30, 100, 300, 1000}) {
     add(time_roundel(crowd_scene(markers, few)));
   }
