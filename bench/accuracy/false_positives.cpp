@@ -35,7 +35,7 @@ parameters and a camera: the arena's floor in Full HD with noise 3 and blur 0.7,
 |---|--:|--:|--:|--:|--:|
 )",
              kSure);
-  int all = 0, all_false = 0;
+  int all = 0, all_false = 0, kind = 0;
   GreyImage picture;
   for (const auto& distractor : all_distractors()) {
     Detector detector(DetectorParameters{}, distractor->camera());
@@ -44,15 +44,15 @@ parameters and a camera: the arena's floor in Full HD with noise 3 and blur 0.7,
       distractor->draw(static_cast<std::uint64_t>(number), picture);
       const auto markers = detector.detect(picture.view());
       if (!markers.empty() && ++false_pictures <= kKeptPictures && !folder.empty()) {
-        write_pgm(
-            std::filesystem::path(folder) / fmt::format("{}-{}.pgm", distractor->name(), number),
-            picture);
+        write_pgm(std::filesystem::path(folder) / fmt::format("false-{}-{}.pgm", kind, number),
+                  picture);
       }
       for (const Marker& marker : markers) {
         ++(marker.id > 0 ? named : plain);
         if (marker.id > 0 && marker.id_probability >= kSure) ++sure;
       }
     }
+    ++kind;
     all += pictures;
     all_false += false_pictures;
     fmt::print(markdown, "| {} | {} | {} | {} | {} | {} |\n", distractor->name(), pictures,

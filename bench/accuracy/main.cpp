@@ -105,7 +105,7 @@ void run_sets(const Options& options, const std::vector<Contender>& contenders) 
   auto csv = open(folder / "accuracy.csv");
   write_summary_csv(csv, summaries, {});
   auto markdown = open(folder / "accuracy.md");
-  write_markdown(markdown, experiments, summaries);
+  write_markdown(markdown, experiments, summaries, options.quick);
   write_targets(markdown, summaries);
   auto rank_csv = open(folder / "rank_tests.csv");
   write_rank_tests(rank_csv, markdown, experiments, results);

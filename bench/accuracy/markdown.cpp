@@ -9,6 +9,10 @@ namespace {
 
 constexpr const char* kIntroduction = R"(# Accuracy
 
+See also: [is the probability of an id what it says?](reliability.md),
+[markers where there are none](false_markers.md), [speed](speed.md); all figures in accuracy.csv.
+![position](position.svg) ![orientation](orientation.svg)
+
 Written by `bench/run-accuracy`; do not edit. The paper's experiments in our rendition (METHOD.md
 sections 8 and 9): every system sees the same poses, through the same lens, blur and noise; only what
 is printed on the white plates (1.35 times the print) differs. A square tag's outer black side is a
@@ -79,8 +83,9 @@ void write_limits(std::ostream& out, const Experiment& experiment,
 }  // namespace
 
 void write_markdown(std::ostream& out, const std::vector<Experiment>& experiments,
-                    const std::vector<Summary>& summaries) {
+                    const std::vector<Summary>& summaries, bool quick) {
   out << kIntroduction;
+  if (quick) out << "\n**A quick run, with a tenth of the poses: an impression, no result.**\n";
   for (const Experiment& experiment : experiments) {
     int judged = 0;
     for (const Summary& s : summaries) {

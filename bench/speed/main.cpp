@@ -84,7 +84,7 @@ std::ofstream open(const std::filesystem::path& path) {
 void report(const Options& options) {
   const Timings timings = measure_all(options);
   if (options.out.empty()) {
-    write_timings_markdown(std::cout, timings);
+    write_timings_markdown(std::cout, timings, options.quick);
     return;
   }
   const std::filesystem::path folder = options.out;
@@ -92,7 +92,7 @@ void report(const Options& options) {
   auto csv = open(folder / "speed.csv");
   write_timings_csv(csv, timings);
   auto markdown = open(folder / "speed.md");
-  write_timings_markdown(markdown, timings);
+  write_timings_markdown(markdown, timings, options.quick);
 }
 
 }  // namespace

@@ -48,8 +48,9 @@ void write_timings_csv(std::ostream& out, const Timings& timings) {
   }
 }
 
-void write_timings_markdown(std::ostream& out, const Timings& timings) {
+void write_timings_markdown(std::ostream& out, const Timings& timings, bool quick) {
   out << kIntroduction;
+  if (quick) out << "\n**A quick run, of few frames: an impression, no result.**\n";
   write_speed_targets(out, timings);
   fmt::print(out,
              "\n## All times\n\nThe ratios are the medians', over Roundel's following and first "
