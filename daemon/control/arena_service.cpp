@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kJudgePeriodUs = 250'000;
 constexpr std::int64_t kRetryUs = 60'000'000;
+constexpr std::int64_t kApplyingUs = 3'000'000;  // without a frame
 
 std::string utc_date() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
@@ -28,7 +29,7 @@ void ArenaService::require_context() const {
 void ArenaService::start(const ArenaRequest& request) {
   const std::lock_guard lock(mutex_);
   require_context();
-  if (calibrator_) throw std::runtime_error("a calibration is running already");
+  if (calibrator_ || applying_) throw std::runtime_error("a calibration is running already");
   if (!context_->camera) {
     throw std::runtime_error(
         "the camera is not calibrated: without its intrinsics (camera.calibration) there is no "
@@ -54,7 +55,7 @@ void ArenaService::cancel() {
 ArenaCalibration ArenaService::restore() {
   const std::lock_guard lock(mutex_);
   require_context();
-  const ArenaCalibration calibration = ArenaStore(context_->arena_file).restore();
+  ArenaCalibration calibration = ArenaStore(context_->arena_file).restore();
   log_info("arena: the calibration of {} is in use again", calibration.date);
   use(calibration);
   return calibration;
@@ -87,12 +88,18 @@ void ArenaService::on_frame(const FrameSnapshot& frame) {
     end(CalibrationProgress::State::kFailed, "the camera has changed meanwhile");
   }
   context_ = frame.context;
+  if (applying_ && context_->calibration == applying_) {
+    end(CalibrationProgress::State::kDone, "calibrated");
+  }
   if (calibrator_) calibrator_->add(frame.markers);
   watch(frame);
 }
 
 void ArenaService::on_tick(std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
+  if (applying_ && now_us - applying_since_us_ > kApplyingUs) {
+    end(CalibrationProgress::State::kDone, "calibrated");
+  }
   advance(now_us);
 }
 
@@ -110,6 +117,7 @@ void ArenaService::advance(std::int64_t now_us) {
 
 void ArenaService::end(CalibrationProgress::State state, std::string text) {
   calibrator_.reset();
+  applying_.reset();
   progress_.state = state;
   progress_.text = std::move(text);
 }
@@ -123,17 +131,19 @@ void ArenaService::finish() {
     log_info("arena: calibrated from {} frames and {} markers, certain to {:.2f} mm; {}",
              calibration.frames, calibration.references.size(), 1000 * calibration.certainty_m,
              file_);
-    use(std::move(calibration));
-    end(CalibrationProgress::State::kDone, "calibrated");
+    applying_ = use(std::move(calibration));
+    applying_since_us_ = now().mono_us;
+    calibrator_.reset();
   } catch (const std::runtime_error& error) {
     log_warning("arena: not calibrated: {}", error.what());
     end(CalibrationProgress::State::kFailed, error.what());
   }
 }
 
-void ArenaService::use(ArenaCalibration calibration) {
+std::shared_ptr<const ArenaCalibration> ArenaService::use(ArenaCalibration calibration) {
   auto shared = std::make_shared<const ArenaCalibration>(std::move(calibration));
   loop_.post([shared](LoopControl& loop) { loop.set_arena(shared); });
+  return shared;
 }
 
 void ArenaService::watch(const FrameSnapshot& frame) {

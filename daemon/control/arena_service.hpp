@@ -51,7 +51,7 @@ class ArenaService {
   void advance(std::int64_t now_us);
   void end(CalibrationProgress::State state, std::string text);
   void finish();
-  void use(ArenaCalibration calibration);
+  std::shared_ptr<const ArenaCalibration> use(ArenaCalibration calibration);
   void watch(const FrameSnapshot& frame);
 
   LoopCommands& loop_;
@@ -60,6 +60,10 @@ class ArenaService {
   std::optional<ArenaCalibrator> calibrator_;       // while one runs
   std::string file_;                                // that it will be written to
   std::int64_t started_us_ = 0, judged_us_ = 0;
+  // Made and kept, and on its way to the frame loop: done when a frame comes that was located by
+  // it.
+  std::shared_ptr<const ArenaCalibration> applying_;
+  std::int64_t applying_since_us_ = 0;
   CalibrationProgress progress_;
 
   std::shared_ptr<const ArenaCalibration> watched_;

