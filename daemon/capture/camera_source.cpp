@@ -299,12 +299,6 @@ std::string CameraSource::identity() const {
                                : fmt::format("{}, serial {}", known->card, known->serial);
 }
 
-std::string CameraSource::crop() const {
-  const Crop& crop = parameters_.mode.crop;
-  if (crop.width == 0) return {};
-  return fmt::format("{}x{} from ({}, {})", crop.width, crop.height, crop.left, crop.top);
-}
-
 std::string CameraSource::description() const {
   if (!camera_) {
     return before_ ? fmt::format("{}, not there", describe(*before_)) : "a camera, not there yet";
@@ -318,13 +312,6 @@ std::string CameraSource::description() const {
                      camera_->mode.layout.height, rate, how_it_is_read(format),
                      camera_->mode.emulated ? " after libv4l2's conversion" : "",
                      camera_->stream->cached() ? ", cached buffers" : "");
-}
-
-// As find_again() knows it. Nothing before it was there for the first time.
-std::string CameraSource::identity() const {
-  if (!before_) return {};
-  return before_->serial.empty() ? fmt::format("{} at {}", before_->card, before_->bus)
-                                 : fmt::format("{}, serial {}", before_->card, before_->serial);
 }
 
 std::string CameraSource::crop() const {
