@@ -11,7 +11,13 @@ constexpr const char* kIntroduction = R"(# Accuracy
 
 See also: [is the probability of an id what it says?](reliability.md),
 [markers where there are none](false_markers.md), [speed](speed.md); all figures in accuracy.csv.
-![position](position.svg) ![orientation](orientation.svg)
+One thing varied at a time, with every system: [tilt](sweep-tilt.svg), [distance](sweep-distance.svg),
+[noise](sweep-noise.svg), [blur](sweep-blur.svg), [gamma](sweep-gamma.svg), [size](sweep-size.svg).
+
+![position](position.svg)
+
+![orientation](orientation.svg)
+
 
 Written by `bench/run-accuracy`; do not edit. The paper's experiments in our rendition (METHOD.md
 sections 8 and 9): every system sees the same poses, through the same lens, blur and noise; only what

@@ -52,17 +52,19 @@ do for [k = 1:|sweep|] {
   plot for [i = 1:words(systems)] sweep_rows(sweep[k], word(systems, i)) \
       using 'value':'found_percent' with linespoints lw 1.5 ps 0.5 pt point(i) lc rgb colour(i)
 
-  # The legend takes the fourth place.
+  # The legend takes the fourth place; gnuplot's own key is left out in a panel so narrow.
   unset title
   unset xlabel
   unset tics
   unset border
   unset logscale x
-  set key left center samplen 2 spacing 1.4
   set xrange [0:1]
-  plot for [i = 1:words(systems)] NaN \
-      with linespoints lw 1.5 pt point(i) lc rgb colour(i) title word(systems, i), \
-    NaN with lines dt 2 lw 1.5 lc rgb 'black' title 'Cramér–Rao bound (rms), roundel'
+  do for [i = 1:words(systems)] {
+    set label i '● ' . word(systems, i) at graph 0, 1.0 - 0.1 * i noenhanced tc rgb colour(i)
+  }
+  set label 99 '- - Cramér–Rao bound (rms), roundel' at graph 0, 0.2
+  plot -1 with lines notitle
+  unset label
   unset multiplot
   set tics
   set border
@@ -85,7 +87,7 @@ do for [m = 1:2] {
   set output sprintf('%s/%s.svg', folder, metric_file[m])
   set title metric_title[m]
   plot for [i = 1:words(systems)] set_rows(word(systems, i)) \
-    using 0:metric[m]:xticlabel('set') with points ps 1.1 lw 1.5 pt point(i) lc rgb colour(i) \
+    using 0:metric[m]:xticlabel(1) with points ps 1.1 lw 1.5 pt point(i) lc rgb colour(i) \
     title word(systems, i) noenhanced
 }
 
@@ -98,7 +100,7 @@ set datafile separator ','
 set datafile columnheaders
 set grid lc rgb '#dddddd'
 set title 'share of right ids by their stated probability'
-set xlabel 'id_probability'
+set xlabel 'id_probability' noenhanced
 set ylabel 'right'
 set xrange [0:1.02]
 set yrange [0:1.02]
