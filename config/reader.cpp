@@ -98,7 +98,7 @@ struct ReadValue {
   std::string operator()(std::map<std::string, std::string>* target) const {
     target->clear();
     if (node.IsNull()) return {};
-    if (!node.IsMap()) return "is not a list of names with values";
+    if (!node.IsMap()) return "has no names with values";
     if (node.size() > kMaxListLength) return "is too long";
     for (const auto& entry : node) {
       const bool text = entry.first.IsScalar() && !entry.first.Scalar().empty() &&

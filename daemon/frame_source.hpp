@@ -70,6 +70,11 @@ class FrameSource {
   virtual bool simulated() const = 0;  // no camera took these frames just now
   virtual std::string description() const = 0;
 
+  // What tells this camera from every other, whenever it is plugged in; empty: unknown. An arena
+  // calibration belongs to it, and to the crop.
+  virtual std::string identity() const { return {}; }
+  // The part of the sensor that the frames show, in words; empty: all of it.
+  virtual std::string crop() const { return {}; }
   // The exact lens, where the source knows it.
   virtual std::optional<CameraModel> camera() const { return std::nullopt; }
   // A camera's controls, for any thread; other sources have none.

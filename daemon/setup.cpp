@@ -53,6 +53,7 @@ std::uint32_t fourcc_of(const LoadedConfiguration& configuration) {
   const std::optional<std::uint32_t> fourcc = parse_fourcc(name);
   if (fourcc && find_pixel_format(*fourcc) != nullptr) return *fourcc;
   std::vector<std::string> names = {"auto"};
+  names.reserve(pixel_formats().size() + 1);
   for (const PixelFormat& format : pixel_formats()) names.push_back(fourcc_name(format.fourcc));
   throw configuration.error("camera.format",
                             fmt::format("\"{}\" is no format that can be read; accepted: {}", name,

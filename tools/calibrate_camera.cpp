@@ -11,12 +11,12 @@
 #include "calibration/camera_file.hpp"
 #include "calibration/view_advice.hpp"
 #include "calibration/view_collector.hpp"
+#include "daemon/json_frame.hpp"
 #include "tools/board_options.hpp"
 #include "tools/calibrate.hpp"
 #include "tools/camera_report.hpp"
 #include "tools/commands.hpp"
 #include "tools/frame_input.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {

@@ -7,9 +7,9 @@
 
 #include "daemon/capture/camera_mode.hpp"
 #include "daemon/capture/device_controls.hpp"
+#include "daemon/json_frame.hpp"
 #include "tools/commands.hpp"
 #include "tools/json_camera.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {
@@ -17,6 +17,7 @@ namespace {
 
 std::string rates_text(const OfferedSize& size) {
   std::vector<std::string> rates;
+  rates.reserve(size.frame_rates.size());
   for (const double rate : size.frame_rates) rates.push_back(fmt::format("{:.4g}", rate));
   return rates.empty() ? "" : fmt::format(" at {}/s", fmt::join(rates, ", "));
 }
@@ -38,6 +39,7 @@ std::string formats_text(const std::vector<OfferedFormat>& formats) {
 std::string range_text(const Control& control) {
   if (!control.menu.empty()) {
     std::vector<std::string> items;
+    items.reserve(control.menu.size());
     for (const Control::MenuItem& item : control.menu) items.push_back(item.name);
     return fmt::format("{}", fmt::join(items, ", "));
   }

@@ -27,6 +27,7 @@ bool matches(const CameraInformation& camera, const CameraChoice& choice) {
 
 std::string list(const std::vector<CameraInformation>& cameras) {
   std::vector<std::string> texts;
+  texts.reserve(cameras.size());
   for (const CameraInformation& camera : cameras) texts.push_back(describe(camera));
   return fmt::format("{}", fmt::join(texts, ", "));
 }

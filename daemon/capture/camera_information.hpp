@@ -18,10 +18,10 @@ struct CameraInformation {
 
 // Which camera to take. Without any rule it is the first.
 struct CameraChoice {
-  std::string device;  // node or link; empty: by the rules below
-  std::string card;    // part of the name; each of these may be empty
-  std::string bus;
-  std::string serial;
+  std::string device = {};  // node or link; empty: by the rules below
+  std::string card = {};    // part of the name; each of these may be empty
+  std::string bus = {};
+  std::string serial = {};
 };
 
 // "Name (/dev/video0, usb-0000:00:14.0-1, serial 1234)"

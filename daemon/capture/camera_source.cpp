@@ -178,7 +178,9 @@ void CameraSource::lose(const std::string& reason) {
   } else {
     note_failure(CameraError(fmt::format("{}: {}", describe(camera_->information), reason)));
   }
-  camera_.reset();  // closed now: otherwise it would come back under another number
+  // Closed now: otherwise it would come back under another number.
+  ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, camera_->device->descriptor(), nullptr);
+  camera_.reset();
   counts_ += std::exchange(later_, {});
   schedule_retry();
 }
@@ -290,6 +292,13 @@ void CameraSource::note_frame() {
   told_in_vain_ = false;
 }
 
+std::string CameraSource::identity() const {
+  const CameraInformation* known = camera_ ? &camera_->information : before_ ? &*before_ : nullptr;
+  if (known == nullptr) return {};
+  return known->serial.empty() ? fmt::format("{} at {}", known->card, known->bus)
+                               : fmt::format("{}, serial {}", known->card, known->serial);
+}
+
 std::string CameraSource::description() const {
   if (!camera_) {
     return before_ ? fmt::format("{}, not there", describe(*before_)) : "a camera, not there yet";
@@ -303,6 +312,12 @@ std::string CameraSource::description() const {
                      camera_->mode.layout.height, rate, how_it_is_read(format),
                      camera_->mode.emulated ? " after libv4l2's conversion" : "",
                      camera_->stream->cached() ? ", cached buffers" : "");
+}
+
+std::string CameraSource::crop() const {
+  const Crop& crop = parameters_.mode.crop;
+  if (crop.empty()) return {};
+  return fmt::format("{}x{} at ({}, {})", crop.width, crop.height, crop.left, crop.top);
 }
 
 std::string CameraSource::explanation_of_drops() const {

@@ -37,6 +37,7 @@ std::string sizes(const std::vector<OfferedFormat>& offered) {
     for (const OfferedSize& size : format.sizes) all.emplace(size.width, size.height);
   }
   std::vector<std::string> texts;
+  texts.reserve(all.size());
   for (const auto& [width, height] : all) texts.push_back(fmt::format("{}x{}", width, height));
   return fmt::format("{}", fmt::join(texts, ", "));
 }

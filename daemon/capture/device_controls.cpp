@@ -110,6 +110,7 @@ std::string accepted_values(const Control& control) {
       return "true, false";
     case Control::Type::kMenu: {
       std::vector<std::string> items;
+      items.reserve(control.menu.size());
       for (const Control::MenuItem& item : control.menu) {
         items.push_back(fmt::format("{} ({})", item.name, item.index));
       }

@@ -94,7 +94,7 @@ std::string serial_of(const std::string& name) {
   std::ifstream file(interface.parent_path() / "serial");
   std::string serial;
   std::getline(file, serial);
-  return serial.substr(0, 256);
+  return printable(serial.substr(0, 256));
 }
 
 std::vector<std::string> links_to(const fs::path& node) {

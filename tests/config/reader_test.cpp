@@ -88,7 +88,7 @@ TEST_CASE("a wrong type is an error with its place and what is accepted") {
   CHECK(
       error_for("- a\n").starts_with("roundel.yaml:1:1: is not a section; accepted: keys source"));
   CHECK(
-      error_for("source: {a: 1}\n").find("the section is no source; accepted: simulator, files") !=
+      error_for("source: {a: 1}\n").find("the section is no source; accepted: simulator, files, camera") !=
       std::string::npos);
 }
 
@@ -122,10 +122,38 @@ TEST_CASE("values that do not go together are an error") {
         "at most 40");
 }
 
-TEST_CASE("the camera as a source is refused in a way that tells it from a mistake") {
-  CHECK(error_for("source: camera\n") ==
-        "roundel.yaml:1:9: source: \"camera\" is not supported by this version yet; accepted: "
-        "simulator, files");
+TEST_CASE("a camera is described by its place or its name, its mode and its controls") {
+  const Configuration c = parse(
+      "source: camera\n"
+      "camera:\n"
+      "  device: /dev/v4l/by-id/usb-x\n"
+      "  format: YUYV\n"
+      "  width: 1280\n"
+      "  controls: {auto_exposure: Manual Mode, gain: 20, focus_automatic_continuous: false}\n");
+  CHECK(c.source == SourceKind::kCamera);
+  CHECK(c.camera.device == "/dev/v4l/by-id/usb-x");
+  CHECK(c.camera.width == 1280);
+  CHECK(c.camera.controls == std::map<std::string, std::string>{
+                                 {"auto_exposure", "Manual Mode"},
+                                 {"gain", "20"},
+                                 {"focus_automatic_continuous", "false"}});
+  CHECK(parse("camera: {controls: }\n").camera.controls.empty());
+  CHECK(parse("", {"camera.controls={gain: 3}"}).camera.controls.at("gain") == "3");
+}
+
+TEST_CASE("a camera that can't be meant is an error") {
+  CHECK(error_for("camera: {device: video0}\n").find("accepted: a path, as in /dev/video0") !=
+        std::string::npos);
+  CHECK(error_for("camera: {controls: [gain]}\n").find("the list has no names with values") !=
+        std::string::npos);
+  CHECK(error_for("camera: {controls: {gain: [1]}}\n").find("not text or a number") !=
+        std::string::npos);
+  CHECK(error_for("camera: {controls: {gain: }}\n").find("not text or a number") !=
+        std::string::npos);
+  CHECK(error_for("camera: {controls: {gain: 1, gain: 2}}\n").find("gain\" twice") !=
+        std::string::npos);
+  CHECK(error_for("camera: {crop_width: 100}\n").find("camera.crop_height go together") !=
+        std::string::npos);
 }
 
 TEST_CASE("a key that is set twice is an error") {

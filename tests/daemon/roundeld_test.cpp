@@ -161,6 +161,24 @@ TEST_CASE("roundeld started before the network waits for it") {
   CHECK(daemon.wait(kPatience) == 0);
 }
 
+TEST_CASE("roundeld waits for a camera that is not there, and says so to its subscribers") {
+  if (!multicast_is_private()) return;
+  constexpr int kPort = 7705;
+  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  ChildProcess daemon({ROUNDELD_BINARY, "--set", "source=camera", "--set",
+                       "camera.device=/dev/v4l/by-id/none", "--set", "lcm.url=" + url(kPort)});
+  CHECK(daemon.wait_for("no camera is at /dev/v4l/by-id/none", kPatience));
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!subscriber.status() && std::chrono::steady_clock::now() < deadline) {
+    CHECK(subscriber.next_frame(100ms) == nullptr);
+  }
+  REQUIRE(subscriber.status().has_value());
+  CHECK(subscriber.status()->camera_state == header_t::CAMERA_STARTING);
+  CHECK(subscriber.status()->simulated == 0);
+  daemon.signal(SIGTERM);
+  CHECK(daemon.wait(kPatience) == 0);
+}
+
 TEST_CASE("a recording is sent frame by frame to its end") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7704;

@@ -1,0 +1,119 @@
+// The tracker reads the driver's own memory.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <linux/videodev2.h>
+
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+
+#include "core/tracker.hpp"
+#include "daemon/broadcast.hpp"
+#include "daemon/capture/camera_source.hpp"
+#include "daemon/latency_histogram.hpp"
+#include "tests/allocation_counter.hpp"
+#include "tests/daemon/wait_for_descriptor.hpp"
+#include "tests/lab/report.hpp"
+#include "tests/lab/usb_camera.hpp"
+#include "tests/lab/vivid_camera.hpp"
+
+using namespace roundel;
+
+namespace {
+
+constexpr int kPatienceMs = 20'000;
+constexpr int kFrames = 60;
+
+// The kernel's own word on what lies at an address: the file whose mapping holds it.
+std::string mapped_file(const void* address) {
+  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    std::istringstream words(line);
+    std::uintptr_t begin = 0, end = 0;
+    char dash = 0;
+    words >> std::hex >> begin >> dash >> end;
+    if (wanted < begin || wanted >= end) continue;
+    const std::size_t path = line.find('/');
+    return path == std::string::npos ? "" : line.substr(path);
+  }
+  return "";
+}
+
+std::optional<FrameLease> wait_for_frame(CameraSource& source) {
+  for (int i = 0; i < 1000; ++i) {
+    if (!wait_for_descriptor(source.descriptor(), kPatienceMs)) return std::nullopt;
+    if (std::optional<FrameLease> lease = source.next()) return lease;
+  }
+  return std::nullopt;
+}
+
+// Tracks and publishes frames of a camera as roundeld does, in this process. Returns how often
+// memory was allocated on the way.
+long check_in_place(const std::string& name, const CameraParameters& parameters, const Film& film) {
+  CAPTURE(name);
+  CameraSource source(parameters);
+  Tracker tracker(DetectorParameters{}, film.camera());
+  LcmSettings lcm;
+  Broadcast broadcast(lcm, "lab");
+  LatencyHistogram dequeue_to_publish;
+  long allocations = 0;
+  const auto carry = [&](bool count) {
+    std::optional<FrameLease> lease = wait_for_frame(source);
+    REQUIRE(lease.has_value());
+    const LumaView& luma = lease->frame().luma;
+    CHECK(mapped_file(luma.data) == "/dev/video0");
+    CHECK(mapped_file(&luma.row(luma.height - 1)[(luma.width - 1) * luma.pixel_stride]) ==
+          "/dev/video0");
+    const std::int64_t checked_us = now().mono_us;
+    const AllocationCounter counter;
+    const std::span<const Marker> markers = tracker.track(luma);
+    lease->give_back();
+    FrameInformation information;
+    information.captured = lease->frame().captured;
+    broadcast.publish(information, markers);
+    if (count) {
+      allocations += counter.count();
+      dequeue_to_publish.add(now().mono_us - checked_us);
+    }
+  };
+  for (int i = 0; i < kFrames / 2; ++i) carry(false);
+  for (int i = 0; i < kFrames; ++i) carry(true);
+  report(
+      fmt::format("{}: read in place; dequeue to publish 50 % {:.0f} us, 90 % {:.0f} us, 99 % "
+                  "{:.0f} us",
+                  name, dequeue_to_publish.percentile_us(0.5),
+                  dequeue_to_publish.percentile_us(0.9), dequeue_to_publish.percentile_us(0.99)));
+  return allocations;
+}
+
+}  // namespace
+
+TEST_CASE("direct formats are read in the driver's own memory, and nothing is allocated") {
+  const Film& film = Film::shared();
+  struct Case {
+    const char* name;
+    UsbFormat format;
+  };
+  for (const Case& c : {Case{"GREY", UsbFormat::kGrey}, Case{"YUYV", UsbFormat::kYuyv},
+                        Case{"NV12", UsbFormat::kNv12}}) {
+    UsbCameraDescription description;
+    description.formats = {c.format};
+    const UsbCamera camera(film, description);
+    CHECK(check_in_place(c.name, CameraParameters(), film) == 0);
+  }
+}
+
+// They show vivid's own pattern, whatever the tracker makes of it.
+TEST_CASE("multi-planar buffers are read in the driver's own memory") {
+  const Film& film = Film::shared();
+  VividCamera camera(film, V4L2_PIX_FMT_GREY, "multiplanar=2");
+  CameraParameters parameters;
+  parameters.choice.card = "vivid";
+  parameters.mode.width = 640;
+  parameters.mode.height = 480;
+  for (const std::uint32_t fourcc : {V4L2_PIX_FMT_GREY, V4L2_PIX_FMT_NV12M, V4L2_PIX_FMT_NV12}) {
+    parameters.mode.fourcc = fourcc;
+    check_in_place(fourcc_name(fourcc) + " by several planes", parameters, film);
+  }
+}
