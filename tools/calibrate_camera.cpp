@@ -101,9 +101,10 @@ void calibrate_camera(const CalibrateCameraOptions& options) {
   const CameraModel& camera = report.calibration.result.camera;
   report.advice = view_advice(views, camera);
   tell_left_out(report);
-  if (!options.output.empty())
+  if (!options.output.empty()) {
     write_camera_file(options.output, {options.name, camera},
                       camera_file_comments(report, today()));
+  }
   if (options.json) {
     print(json_line(camera_report_json(report)));
     return;

@@ -32,6 +32,7 @@ std::vector<std::string> parameter_lines(const IntrinsicCalibration& result) {
   const IntrinsicVector values = to_vector(result.camera);
   const IntrinsicVector sigma = result.sigma();
   std::vector<std::string> lines;
+  lines.reserve(kIntrinsicParameters);
   for (int k = 0; k < kIntrinsicParameters; ++k) {
     lines.push_back(fmt::format("{} {}{}", kIntrinsicNames[static_cast<std::size_t>(k)],
                                 with_deviation(values[k], sigma[k]), k < kK1 ? " px" : ""));
