@@ -7,7 +7,6 @@
 #include <numbers>
 #include <set>
 
-#include "calibration/homography.hpp"
 #include "calibration/intrinsic_start.hpp"
 #include "core/frame_check.hpp"
 
@@ -17,6 +16,9 @@ namespace {
 // Markers further from where the rest of the board says belong to something else. Half a marker
 // leaves room for a lens that is not known yet, and is well below the distance of two neighbours.
 constexpr double kPlaceTolerance = 0.5;  // of the middling marker's diameter
+
+// The board's axes at a marker differ from its own by no more, lens and first guess included.
+constexpr double kMaxSkew = 0.5;  // radians
 
 // How parallel markers and board are: paper is not quite flat.
 constexpr double kPaperSigma = 0.03;  // radians
@@ -84,6 +86,39 @@ void BoardDetector::look(const LumaView& frame, BoardSighting& sighting) {
   sighting.markers = static_cast<int>(seen_.size());
 }
 
+// Whether a marker's x and y axes run in the picture as the board's do at its place.
+bool BoardDetector::is_aligned(const Seen& seen, const Eigen::Matrix3d& homography) const {
+  const Eigen::Vector2d centre = board_.centre_of(seen.id);
+  const Pose& pose = seen.poses[0].pose;
+  const double step = 0.5 * board_.diameter_m;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto from = camera_.project(pose.position);
+    const auto to = camera_.project(pose.to_camera(step * Eigen::Vector3d::Unit(axis)));
+    if (!from || !to) return false;
+    const Eigen::Vector2d own = (*to - *from).normalized();
+    const Eigen::Vector2d along = apply(homography, centre + step * Eigen::Vector2d::Unit(axis));
+    if (!(own.dot((along - apply(homography, centre)).normalized()) > std::cos(kMaxSkew)))
+      return false;
+  }
+  return true;
+}
+
+// Which of the markers lie as on the board. Places alone do not tell: the ids of a board with other
+// columns lie on a skewed grid.
+std::vector<bool> BoardDetector::correctly_placed(std::span<const PlanePoint> points,
+                                                  double tolerance_px) const {
+  std::vector<bool> placed = consensus(points, tolerance_px);
+  std::vector<PlanePoint> agreeing;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (placed[i]) agreeing.push_back(points[i]);
+  }
+  const auto homography = fit_homography(agreeing);
+  if (!homography) return std::vector<bool>(points.size(), false);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    placed[i] = placed[i] && is_aligned(seen_[i], *homography);
+  return placed;
+}
+
 // Fills the view with the markers that lie as on the board.
 void BoardDetector::keep_placed(BoardSighting& sighting) {
   if (seen_.size() < kMinBoardPoints) return;
@@ -95,7 +130,7 @@ void BoardDetector::keep_placed(BoardSighting& sighting) {
   }
   const auto middle = diameters.begin() + static_cast<std::ptrdiff_t>(diameters.size() / 2);
   std::nth_element(diameters.begin(), middle, diameters.end());
-  const std::vector<bool> placed = consensus(points, kPlaceTolerance * *middle);
+  const std::vector<bool> placed = correctly_placed(points, kPlaceTolerance * *middle);
 
   std::vector<Seen> kept;
   std::set<int> ids;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "calibration/board.hpp"
 #include "calibration/edge_width.hpp"
+#include "calibration/homography.hpp"
 #include "calibration/intrinsic_view.hpp"
 #include "core/camera_model.hpp"
 #include "core/luma_view.hpp"
@@ -43,6 +45,8 @@ class BoardDetector {
   };
 
   void look(const LumaView& frame, BoardSighting& sighting);
+  bool is_aligned(const Seen& seen, const Eigen::Matrix3d& homography) const;
+  std::vector<bool> correctly_placed(std::span<const PlanePoint> points, double tolerance_px) const;
   void keep_placed(BoardSighting& sighting);
   BoardPoint point_of(const Seen& seen, const PoseHypothesis& hypothesis) const;
   PoseHypothesis with_board(const Seen& seen, const Pose& board_in_camera) const;

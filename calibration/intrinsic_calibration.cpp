@@ -171,7 +171,7 @@ IntrinsicCalibration calibrate_intrinsics(std::span<const BoardView> views, int 
                                           const std::optional<CameraModel>& start) {
   constexpr int kMaxRounds = 8;
   const std::vector<BoardView> all = usable(views, width, height);
-  require_views(all, width, height);
+  require_views(all, views.size(), width, height);
   BundleState state = start ? with_poses(all, *start) : first_state(all, width, height);
 
   // Robust first: outliers must not pull the solution that tells them from the others.
@@ -185,7 +185,7 @@ IntrinsicCalibration calibrate_intrinsics(std::span<const BoardView> views, int 
     if (std::abs(deviation - before) < 0.01 * before) break;
   }
   const std::vector<BoardView> used = without_outliers(all, state, kOutlier * deviation);
-  require_views(used, width, height);
+  require_agreement(used.size(), all.size());
 
   bundle.robust_scale = 0;
   BundleResult adjusted = adjust(used, state, bundle);

@@ -16,7 +16,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kMinRegions = 5;    // of nine; beyond them the lens would be a guess
 constexpr double kMinTiltRange = 10;      // degrees between the two most different views
 constexpr double kMaxFocalSigma = 0.005;  // relative
-constexpr double kMaxErrorPx = 1.0;
+constexpr double kMaxErrorPx = 0.5;       // good ones have a tenth of it
 
 // The largest angle between two views of the board, degrees.
 double tilt_range(std::span<const ViewResult> views) {
@@ -63,7 +63,7 @@ void require_board(const BoardTally& tally, const Board& board) {
   }
 }
 
-void require_views(std::span<const BoardView> views, int width, int height) {
+void require_views(std::span<const BoardView> views, std::size_t pictures, int width, int height) {
   const auto enough = std::count_if(views.begin(), views.end(), [](const BoardView& view) {
     return view.points.size() >= kMinBoardPoints;
   });
@@ -71,7 +71,7 @@ void require_views(std::span<const BoardView> views, int width, int height) {
     throw std::runtime_error(fmt::format(
         "{} of {} pictures show at least {} markers of the board; at least {} are needed, some 15 "
         "are good",
-        enough == 0 ? "none" : fmt::format("only {}", enough), views.size(), kMinBoardPoints,
+        enough == 0 ? "none" : fmt::format("only {}", enough), pictures, kMinBoardPoints,
         kMinViews));
   }
   const PictureCoverage coverage = coverage_of(views, width, height);
@@ -81,6 +81,14 @@ void require_views(std::span<const BoardView> views, int width, int height) {
         "not known: add views with the board there",
         listed(coverage.missing())));
   }
+}
+
+void require_agreement(std::size_t left, std::size_t views) {
+  if (3 * left >= 2 * views && left >= static_cast<std::size_t>(kMinViews)) return;
+  throw std::runtime_error(fmt::format(
+      "{} of {} views contradict the others: focus, zoom and size of the pictures must stay the "
+      "same, and the board must be stiff and not move while a picture is taken",
+      views - left, views));
 }
 
 void require_determined(const IntrinsicCalibration& calibration) {
@@ -96,18 +104,23 @@ void require_determined(const IntrinsicCalibration& calibration) {
   }
   if (!(calibration.error_px <= kMaxErrorPx)) {
     throw std::runtime_error(fmt::format(
-        "no camera explains the views: the markers are off by {:.2f} pixels, at most {:.1f} is "
-        "possible; is the board flat, --columns, --rows and the ratio of --diameter to --spacing "
-        "those of the print, and did focus, zoom and size of the pictures stay the same?",
+        "no camera explains the views: the markers are off by {:.2f} pixels (good: below 0.1, at "
+        "most "
+        "{:.1f}); focus, zoom and size of the pictures must stay the same, and the board must be "
+        "stiff and not move while a picture is taken",
         calibration.error_px, kMaxErrorPx));
   }
   const double focal_sigma = std::max(sigma[kFx] / camera.fx, sigma[kFy] / camera.fy);
-  if (!(focal_sigma <= kMaxFocalSigma)) {
+  if (!sigma.allFinite() || focal_sigma > kMaxFocalSigma) {
+    throw std::runtime_error(fmt::format(
+        "the views leave the focal length uncertain by {:.2g} %, more than {:.1g} %: "
+        "add views with the board closer, and tilted by 20 to 45 degrees in all directions",
+        100 * focal_sigma, 100 * kMaxFocalSigma));
+  }
+  if (!std::isfinite(calibration.worst_px)) {
     throw std::runtime_error(
-        fmt::format("the views leave the focal length uncertain by {:.2g} %, more than {:.1g} %: "
-                    "add views with "
-                    "the board closer, and tilted by 20 to 45 degrees in all directions",
-                    100 * focal_sigma, 100 * kMaxFocalSigma));
+        "the lens that explains the views folds back inside the picture, where the board was not "
+        "seen: add views with the board in the corners, or try --no-k3");
   }
 }
 

@@ -26,9 +26,13 @@ struct BoardTally {
 void require_board(const BoardTally& tally, const Board& board);
 
 // Before the adjustment: number of views with enough markers, and where in the picture they were.
-void require_views(std::span<const BoardView> views, int width, int height);
+// `pictures` is how many there were at first.
+void require_views(std::span<const BoardView> views, std::size_t pictures, int width, int height);
 
-// After it: tilts, size of the residuals, deviations of the focal length.
+// After outliers have been left out: how many views are left of how many.
+void require_agreement(std::size_t left, std::size_t views);
+
+// After it: tilts, size of the residuals, deviations of the focal length, reach of the lens model.
 void require_determined(const IntrinsicCalibration& calibration);
 
 }  // namespace roundel

@@ -13,7 +13,8 @@ namespace roundel {
 namespace {
 
 // Shares of the picture's diagonal.
-constexpr double kDistinct = 0.06;     // between the corners of two views, root mean square
+constexpr double kDistinct = 0.04;     // between the corners of two views, root mean square
+constexpr double kTiltShare = 0.2;     // that a tilt of one radian counts for
 constexpr double kMaxMotion = 0.0015;  // from frame to frame: a rolling shutter skews what moves
 constexpr double kCut = 0.1;           // more from frame to frame is no motion but another scene
 constexpr double kMaxEdge = 0.003;
@@ -48,7 +49,9 @@ bool ViewCollector::look(const LumaView& frame) {
   const std::array<int, 4> ids = {1, board_.columns, board_.count() - board_.columns + 1,
                                   board_.count()};
   for (std::size_t i = 0; i < ids.size(); ++i)
-    last_corners_[i] = apply(*homography, board_.centre_of(ids[i]));
+    last_place_.corners[i] = apply(*homography, board_.centre_of(ids[i]));
+  const auto pose = board_pose(last_.view, guess_);
+  last_place_.normal = pose ? pose->normal() : Eigen::Vector3d::Zero();
   return true;
 }
 
@@ -67,49 +70,54 @@ double ViewCollector::motion(const BoardView& before) const {
   return *middle;
 }
 
-// Of the frame given last from a view, pixels.
-double ViewCollector::distance(const CollectedView& view) const {
+// Of the frame given last from a view, pixels: how far the board's corners have moved, and a tilt
+// as if it moved them by a share of the picture, because a tilted board near the camera has its
+// corners where a frontal one further away has them.
+double ViewCollector::distance(const BoardPlace& place) const {
   double sum = 0;
-  for (std::size_t i = 0; i < last_corners_.size(); ++i)
-    sum += (view.corners[i] - last_corners_[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(last_corners_.size()));
+  for (std::size_t i = 0; i < place.corners.size(); ++i)
+    sum += (place.corners[i] - last_place_.corners[i]).squaredNorm();
+  const double tilt = kTiltShare * diagonal_px_ * (place.normal - last_place_.normal).norm();
+  return std::sqrt(sum / static_cast<double>(place.corners.size()) + tilt * tilt);
 }
 
 CollectedView ViewCollector::made(const LumaView& frame, const std::string& name,
                                   double badness_px) const {
-  CollectedView view{name, {}, last_, last_corners_, badness_px};
+  CollectedView view{name, {}, last_, last_place_, badness_px};
   copy(frame, view.picture);
   return view;
 }
 
-ViewCollector::Verdict ViewCollector::take(const LumaView& frame, const std::string& name) {
-  if (!look(frame)) return Verdict::kNoBoard;
+ViewCollector::Outcome ViewCollector::take(const LumaView& frame, const std::string& name) {
+  if (!look(frame)) return Outcome::kNoBoard;
+  if (views_.size() >= kMaxPictures) return Outcome::kFull;
   views_.push_back(made(frame, name, last_.edge_width_px));
-  return Verdict::kTaken;
+  return Outcome::kTaken;
 }
 
-ViewCollector::Verdict ViewCollector::offer(const LumaView& frame, const std::string& name) {
+ViewCollector::Outcome ViewCollector::offer(const LumaView& frame, const std::string& name) {
   const BoardView before = std::exchange(last_, {}).view;
-  if (!look(frame)) return Verdict::kNoBoard;
+  if (!look(frame)) return Outcome::kNoBoard;
   const double moved = motion(before);
   const bool cut = moved > kCut * diagonal_px_;
-  if (!cut && moved > kMaxMotion * diagonal_px_) return Verdict::kMoving;
+  if (!cut && moved > kMaxMotion * diagonal_px_) return Outcome::kMoving;
   if (last_.edge_width_px > std::max(kMinMaxEdge, kMaxEdge * diagonal_px_))
-    return Verdict::kBlurred;
+    return Outcome::kBlurred;
   // After a cut nothing is known about motion: the next frame, if it stays, is the better one.
   const double badness = last_.edge_width_px + (cut ? kMaxMotion * diagonal_px_ : moved);
-  const auto nearest = std::min_element(
-      views_.begin(), views_.end(),
-      [this](const CollectedView& a, const CollectedView& b) { return distance(a) < distance(b); });
-  if (nearest != views_.end() && distance(*nearest) < kDistinct * diagonal_px_) {
-    if (!(badness < kBetter * nearest->badness_px)) return Verdict::kAlike;
+  const auto nearest = std::min_element(views_.begin(), views_.end(),
+                                        [this](const CollectedView& a, const CollectedView& b) {
+                                          return distance(a.place) < distance(b.place);
+                                        });
+  if (nearest != views_.end() && distance(nearest->place) < kDistinct * diagonal_px_) {
+    if (!(badness < kBetter * nearest->badness_px)) return Outcome::kAlike;
     last_.view.picture = nearest->sighting.view.picture;
     *nearest = made(frame, name, badness);
-    return Verdict::kReplaced;
+    return Outcome::kReplaced;
   }
-  if (views_.size() >= kMaxViews) return Verdict::kFull;
+  if (views_.size() >= kMaxViews) return Outcome::kFull;
   views_.push_back(made(frame, name, badness));
-  return Verdict::kTaken;
+  return Outcome::kTaken;
 }
 
 std::vector<std::string> ViewCollector::advice() const {
@@ -118,21 +126,21 @@ std::vector<std::string> ViewCollector::advice() const {
   return view_advice(seen, guess_);
 }
 
-const char* describe(ViewCollector::Verdict verdict) {
-  switch (verdict) {
-    case ViewCollector::Verdict::kTaken:
+const char* describe(ViewCollector::Outcome outcome) {
+  switch (outcome) {
+    case ViewCollector::Outcome::kTaken:
       return "taken";
-    case ViewCollector::Verdict::kReplaced:
+    case ViewCollector::Outcome::kReplaced:
       return "taken in place of a worse one";
-    case ViewCollector::Verdict::kNoBoard:
+    case ViewCollector::Outcome::kNoBoard:
       return "the board is not in it, or too little of it";
-    case ViewCollector::Verdict::kMoving:
+    case ViewCollector::Outcome::kMoving:
       return "the board moves";
-    case ViewCollector::Verdict::kBlurred:
+    case ViewCollector::Outcome::kBlurred:
       return "it is blurred";
-    case ViewCollector::Verdict::kAlike:
+    case ViewCollector::Outcome::kAlike:
       return "much like one taken before";
-    case ViewCollector::Verdict::kFull:
+    case ViewCollector::Outcome::kFull:
       return "enough views are there";
   }
   return "";

@@ -13,13 +13,19 @@
 
 namespace roundel {
 
+// Where in a picture the board is, and how it is held.
+struct BoardPlace {
+  std::array<Eigen::Vector2d, 4> corners{};          // of the grid, pixels
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // in a guessed camera's frame
+};
+
 // A picture that was kept, and what was seen in it.
 struct CollectedView {
   std::string name;  // the caller's, for messages
   GreyImage picture;
-  BoardSighting sighting;                    // under a guessed camera
-  std::array<Eigen::Vector2d, 4> corners{};  // of the board's grid, pixels
-  double badness_px = 0;                     // width of edges plus motion; the lower the better
+  BoardSighting sighting;  // under a guessed camera
+  BoardPlace place;
+  double badness_px = 0;  // width of edges plus motion; the lower the better
 };
 
 // Chooses views for a calibration out of a stream of frames, live or from a video: those that show
@@ -27,18 +33,20 @@ struct CollectedView {
 // of one that it resembles. Copies the frames that it keeps.
 class ViewCollector {
  public:
-  enum class Verdict { kTaken, kReplaced, kNoBoard, kMoving, kBlurred, kAlike, kFull };
+  enum class Outcome { kTaken, kReplaced, kNoBoard, kMoving, kBlurred, kAlike, kFull };
 
-  static constexpr std::size_t kMaxViews = 40;
+  static constexpr std::size_t kMaxViews = 40;      // out of a stream
+  static constexpr std::size_t kMaxPictures = 200;  // in all
 
   // Throws std::invalid_argument for a board that can't be.
   ViewCollector(const Board& board, int width, int height);
 
   // The next frame of a stream; it must have the size given.
-  Verdict offer(const LumaView& frame, const std::string& name);
+  Outcome offer(const LumaView& frame, const std::string& name);
 
-  // A picture that somebody chose: kept if it shows enough of the board, whatever it is like.
-  Verdict take(const LumaView& frame, const std::string& name);
+  // A picture that somebody chose: kept if it shows enough of the board, whatever it is like, as
+  // long as there is room.
+  Outcome take(const LumaView& frame, const std::string& name);
 
   int width() const { return guess_.width; }
   int height() const { return guess_.height; }
@@ -55,7 +63,7 @@ class ViewCollector {
   bool look(const LumaView& frame);
   CollectedView made(const LumaView& frame, const std::string& name, double badness_px) const;
   double motion(const BoardView& before) const;
-  double distance(const CollectedView& view) const;
+  double distance(const BoardPlace& place) const;
 
   CameraModel guess_;
   Board board_;
@@ -63,11 +71,11 @@ class ViewCollector {
   double diagonal_px_ = 0;
   BoardTally tally_;
   BoardSighting last_;
-  std::array<Eigen::Vector2d, 4> last_corners_{};
+  BoardPlace last_place_;
   std::vector<CollectedView> views_;
 };
 
 // "it is blurred", ... for people.
-const char* describe(ViewCollector::Verdict verdict);
+const char* describe(ViewCollector::Outcome outcome);
 
 }  // namespace roundel

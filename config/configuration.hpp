@@ -50,6 +50,25 @@ struct CameraSettings {
   std::map<std::string, std::string> controls;  // by their V4L2 names
 };
 
+// How robots wear their markers; metres and radians, in the robot's frame.
+struct MountSettings {
+  double height = 0;  // of the marker's face above the floor
+  double offset_x = 0, offset_y = 0;
+  double rotation = 0;
+  std::vector<std::string> mounts;  // robots that differ, "7 height=0.12"
+};
+
+struct ArenaSettings {
+  std::string mode = "2d";  // or 3d
+  std::string file = "/var/lib/roundel/arena.yaml";
+  bool recalibrate = false;  // by itself, after the camera has been moved
+};
+
+struct ControlSettings {
+  std::string socket = "/run/roundel/control.sock";  // empty: none
+  std::string group = "roundel";                     // who may use it; empty: roundeld's own group
+};
+
 struct LcmSettings {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   std::string channel = "ROUNDEL";  // prefix of all channels
@@ -63,6 +82,9 @@ struct Configuration {
   FilesSettings files;
   CameraSettings camera;
   DetectorParameters detector;  // sections marker and detector
+  MountSettings mount;          // section marker
+  ArenaSettings arena;
+  ControlSettings control;
   LcmSettings lcm;
 };
 

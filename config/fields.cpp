@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+
+#include "config/mounts.hpp"
 
 namespace roundel {
 namespace {
@@ -29,6 +32,17 @@ bool is_printable(FieldTarget value) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
   }
   return true;
+}
+
+bool is_arena_mode(FieldTarget value) {
+  const std::string& mode = *std::get<std::string*>(value);
+  return mode == "2d" || mode == "3d";
+}
+
+bool are_mounts(FieldTarget value) {
+  const auto& mounts = *std::get<std::vector<std::string>*>(value);
+  return std::all_of(mounts.begin(), mounts.end(),
+                     [](const std::string& text) { return parse_mount(text, {}).has_value(); });
 }
 
 bool is_path_or_empty(FieldTarget value) {
@@ -82,6 +96,17 @@ constexpr std::array kFields = {
           "0 (plain WhyCon markers), or 2 to 16"},
     Field{"marker.hamming", ROUNDEL_TARGET(detector.hamming), 1, kMaxHamming},
 
+    Field{"marker.height", ROUNDEL_TARGET(mount.height), 0, 10},
+    Field{"marker.offset_x", ROUNDEL_TARGET(mount.offset_x), -10, 10},
+    Field{"marker.offset_y", ROUNDEL_TARGET(mount.offset_y), -10, 10},
+    Field{"marker.rotation", ROUNDEL_TARGET(mount.rotation), -6.3, 6.3},
+    Field{"marker.mounts", ROUNDEL_TARGET(mount.mounts), 0, 0, are_mounts,
+          "a list of ids with height, offset_x, offset_y or rotation, as in [7 height=0.12]"},
+
+    Field{"arena.mode", ROUNDEL_TARGET(arena.mode), 2, 2, is_arena_mode, "2d, 3d"},
+    Field{"arena.file", ROUNDEL_TARGET(arena.file), 1, 4000},
+    Field{"arena.recalibrate", ROUNDEL_TARGET(arena.recalibrate)},
+
     Field{"detector.max_markers", ROUNDEL_TARGET(detector.max_markers), 1, 10000},
     Field{"detector.min_diameter_px", ROUNDEL_TARGET(detector.min_diameter_px), 6, 8192},
     Field{"detector.max_diameter_px", ROUNDEL_TARGET(detector.max_diameter_px), 6, 8192},
@@ -99,6 +124,9 @@ constexpr std::array kFields = {
           "1 to 40 of the characters A-Z a-z 0-9 _ - /"},
     Field{"lcm.per_marker", ROUNDEL_TARGET(lcm.per_marker)},
     Field{"lcm.max_datagram", ROUNDEL_TARGET(lcm.max_datagram), 512, 65000},
+
+    Field{"control.socket", ROUNDEL_TARGET(control.socket), 0, 107},
+    Field{"control.group", ROUNDEL_TARGET(control.group), 0, 32},
 };
 
 #undef ROUNDEL_TARGET

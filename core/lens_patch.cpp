@@ -7,13 +7,13 @@ namespace roundel {
 
 std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen::Vector2d& middle,
                                          double reach) {
-  // Least squares over a 5 x 5 grid; the grid is the same for every patch, so is its
+  // Least squares over a 4 x 4 grid; the grid is the same for every patch, so is its
   // pseudo-inverse.
-  constexpr int kSide = 5;
+  constexpr int kSide = 4;
   constexpr int kPoints = kSide * kSide;
   const auto grid = [](int i) {
     const int column = i % kSide, row = i / kSide;
-    return Eigen::Vector2d(column / 2.0 - 1, row / 2.0 - 1);
+    return Eigen::Vector2d(column / 1.5 - 1, row / 1.5 - 1);
   };
   using Design = Eigen::Matrix<double, kPoints, kTerms>;
   static const Eigen::Matrix<double, kTerms, kPoints> solver = [&grid] {

@@ -46,9 +46,9 @@ int fitting_column(const LumaView& frame, const Seed& seed, int reach) {
 
 MarkerSearch::MarkerSearch(const DetectorParameters& parameters)
     : parameters_(parameters), finder_(parameters) {
-  // Two rows through the bright centre, so that one spoilt by a tooth does no harm.
+  // A row pair through the bright centre of the smallest marker.
   const double centre_height = kPlainInnerRatioMin * parameters.min_diameter_px;
-  smallest_spacing_ = std::clamp(static_cast<int>(centre_height / 2), 1, 8);
+  smallest_spacing_ = std::clamp(static_cast<int>(centre_height) - 1, 1, 8);
 }
 
 void MarkerSearch::begin(const LumaView& frame) {
@@ -65,23 +65,25 @@ void MarkerSearch::begin(const LumaView& frame) {
                        static_cast<int>(std::lround(kNoiseFactor * estimate_noise(frame))));
 }
 
-bool MarkerSearch::is_claimed(int u, int v) const {
+bool MarkerSearch::is_owned(int u, int v, Owner owner) const {
   const RowHead& head = rows_[static_cast<std::size_t>(v)];
   if (head.stamp != stamp_) return false;
   for (std::int32_t i = head.first; i >= 0; i = claims_[static_cast<std::size_t>(i)].next_in_row) {
     const Claim& claim = claims_[static_cast<std::size_t>(i)];
-    if (u >= claim.u0 && u <= claim.u1) return true;
+    if (u >= claim.u0 && u <= claim.u1 && claim.owner == owner) return true;
   }
   return false;
 }
 
+void MarkerSearch::claim(const Run& run, Owner owner) {
+  RowHead& head = rows_[static_cast<std::size_t>(run.v)];
+  if (head.stamp != stamp_) head = {stamp_, -1};
+  claims_.push_back({run.u0, run.u1, head.first, owner});
+  head.first = static_cast<std::int32_t>(claims_.size() - 1);
+}
+
 void MarkerSearch::claim_segment() {
-  for (const Run& span : finder_.row_spans()) {
-    RowHead& head = rows_[static_cast<std::size_t>(span.v)];
-    if (head.stamp != stamp_) head = {stamp_, -1};
-    claims_.push_back({span.u0, span.u1, head.first});
-    head.first = static_cast<std::int32_t>(claims_.size() - 1);
-  }
+  for (const Run& span : finder_.row_spans()) claim(span, Owner::kMarker);
 }
 
 Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold,
@@ -107,12 +109,18 @@ void MarkerSearch::search(const LumaView& frame, const Box& area, int spacing, s
          scanner_.scan(frame, v, u0, u1, contrast_, parameters_.max_diameter_px)) {
       if (found.size() >= limit) return;
       if (is_claimed(seed.u, v) || is_claimed(seed.bright_u, v)) continue;
+      if (is_owned(seed.u, v, Owner::kNoMarker)) continue;
       const int column = fitting_column(frame, seed, parameters_.max_diameter_px);
       if (column == 0) continue;
       const RegionFiller::Limits limits{static_cast<int>(kMaxBoxToChord * seed.extent) + 4,
                                         static_cast<int>(kMaxBoxToChord * column) + 4};
-      if (examine(frame, seed.u, v, seed.threshold, limits) == Verdict::kAccepted) {
+      const Verdict verdict = examine(frame, seed.u, v, seed.threshold, limits);
+      if (verdict == Verdict::kAccepted) {
         found.push_back(finder_.segment());
+      } else if (verdict != Verdict::kTooLarge && verdict != Verdict::kKnown) {
+        // Another row would lead to the same region; one too large for this row's limits may be
+        // right for another's.
+        finder_.for_each_run([&](const Run& run) { claim(run, Owner::kNoMarker); });
       }
     }
   }

@@ -27,7 +27,7 @@ class MarkerSearch {
   const Segment& segment() const { return finder_.segment(); }
 
   // Whether a pixel lies in a marker found in this frame.
-  bool is_claimed(int u, int v) const;
+  bool is_claimed(int u, int v) const { return is_owned(u, v, Owner::kMarker); }
 
   // Appends the segments whose centre disc is crossed by rows first_v, first_v + spacing, ...
   // inside the area, up to `limit` segments in all; claims them.
@@ -38,8 +38,12 @@ class MarkerSearch {
   int smallest_spacing() const { return smallest_spacing_; }
 
  private:
+  // Pixels u0 ... u1 of a row that belong to something known: a marker, with all that lies inside of
+  // it, or the dark part of what turned out to be none.
+  enum class Owner : std::int32_t { kMarker, kNoMarker };
   struct Claim {
     std::int32_t u0, u1, next_in_row;
+    Owner owner;
   };
   struct RowHead {
     std::uint32_t stamp = 0;
@@ -47,6 +51,8 @@ class MarkerSearch {
   };
 
   void claim_segment();
+  void claim(const Run& run, Owner owner);
+  bool is_owned(int u, int v, Owner owner) const;
 
   DetectorParameters parameters_;
   int smallest_spacing_ = 1;

@@ -31,11 +31,6 @@ constexpr double kFirstDeviation = 0.15;
 // A hypothesis behind by so much in its log-likelihood before it is refined stays behind.
 constexpr double kDecided = 1000;
 
-// How far a plain marker's edges may be shifted as a whole, pixels.
-constexpr double kPlainShiftSigma = 0.02;
-// Residuals that no noise explains, share of the contrast.
-constexpr double kModelError = 0.01;
-
 void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(what);
 }
@@ -186,13 +181,13 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   const double radius_m = parameters_.diameter_m / 2;
   const bool loaded = fit_.load(frame, *camera_, segment.ellipse, radius_m, kReach);
   FitPlan plan;
+  plan.rough_steps = 2;
   plan.deviation = kFirstDeviation * segment.levels.contrast();
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
     auto& fitted = candidate.fitted;
     PoseHypothesis& hypothesis = candidate.hypothesis;
     EdgeLook look;
-    // Beside an unknown inner ratio, a shift of all edges looks like another distance.
     if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
     const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
     if (loaded && lead < kDecided) {
@@ -203,6 +198,9 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     if (fitted) {
       hypothesis.pose = fitted->state.pose;
       hypothesis.covariance = fitted->covariance;
+      hypothesis.pattern = candidate.pattern;
+      hypothesis.state = fitted->state;
+      hypothesis.mean_square = fitted->mean_square;
       if (candidate.pattern.kind != Pattern::Kind::kCode) {
         hypothesis.pose = pose_from_circle({hypothesis.pose.position, hypothesis.pose.normal()}, 0);
       }

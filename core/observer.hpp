@@ -17,7 +17,10 @@ namespace roundel {
 struct PoseHypothesis {
   Pose pose;
   PoseCovariance covariance = PoseCovariance::Zero();
-  double log_likelihood = 0;  // of what was seen; comparable within a marker
+  double log_likelihood = 0;              // of what was seen; comparable within a marker
+  Pattern pattern;                        // that it was fitted with
+  std::optional<PhotometricState> state;  // of the fit, if there was one
+  double mean_square = 0;                 // of the fit's residuals, grey levels squared
 };
 
 // A marker as one frame shows it, before a track adds what earlier frames showed.
@@ -27,6 +30,7 @@ struct Observation {
   double id_probability = 0;  // given this frame alone
   bool coded = false;         // a code ring was seen, whether or not its id is in the set
   bool plausible = false;  // what lies inside is a code, a plain marker's disc or too small to tell
+  bool followed = false;   // fitted from what the track knew: no new reading, no weighing
   int pose_count = 0;      // 0 without a camera model, else 2
   std::array<PoseHypothesis, 2> poses;  // the likelier one first
 };
@@ -43,11 +47,24 @@ class Observer {
 
   Observation observe(const LumaView& frame, const Segment& segment);
 
+  // The marker of a track that is sure of its id and its pose: a single fit from where the last
+  // observation leads to expect it, with nothing read or weighed anew. `turn`: by which it turned
+  // since, rotation vector in camera axes. Nothing when the picture does not bear it out.
+  std::optional<Observation> follow(const LumaView& frame, const Segment& segment,
+                                    const PoseHypothesis& last, const Ellipse& last_ellipse,
+                                    const Eigen::Vector3d& turn);
+
   // The observation as users get it, with the given one of its poses; id and track are the
   // caller's.
   Marker to_marker(const Observation& observation, int pose_index) const;
 
  private:
+  // How far a plain marker's edges may be shifted as a whole, pixels: beside an unknown inner
+  // ratio, a shift of all edges looks like another distance.
+  static constexpr double kPlainShiftSigma = 0.02;
+  // Residuals that no noise explains, share of the contrast.
+  static constexpr double kModelError = 0.01;
+
   struct Candidate;
   void observe_with_camera(const LumaView& frame, Observation& observation);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);

@@ -19,8 +19,10 @@ constexpr double kStretchPrior = 0.5;
 constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
-// Where a fit ends; rounding to whole grey levels and the model itself leave some variance.
-constexpr double kSettled = 1.0, kLeastVariance = 0.25;
+// Where a fit ends: a step that takes so many variances of the residuals off the sum of squares
+// moves the pose by some standard deviations, and what it leaves is of the second order. Rounding
+// to whole grey levels and the model itself leave some variance.
+constexpr double kSettled = 30, kLeastVariance = 0.25;
 
 // Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
 constexpr double kRobust = 3.0, kOutlier = 8.0;
@@ -31,7 +33,8 @@ struct PhotometricFit::Step {
   Vector change = Vector::Zero();
   double mean_square = 0;  // of the residuals before it
   double gain = 0;  // what it takes off the sum of squares, in units of the residuals' variance
-  PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes
+  bool last = false;
+  PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes; when last
 };
 
 bool PhotometricFit::load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
@@ -102,8 +105,8 @@ PhotometricModel PhotometricFit::model_of(const PhotometricState& state, const P
 // Solves the normal equations with what is known beforehand.
 template <int kCount>
 PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const Pattern& pattern,
-                                           const EdgeLook& look,
-                                           const PhotometricSums& sums) const {
+                                           const EdgeLook& look, const PhotometricSums& sums,
+                                           const FitPlan& plan, int taken) const {
   Eigen::Matrix<double, kCount, kCount> normal_matrix;
   Eigen::Matrix<double, kCount, 1> right_side;
   std::size_t at = 0;
@@ -137,9 +140,13 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
   step.gain = right_side.dot(step.change.template head<kCount>()) / variance;
-  const Eigen::Matrix<double, kCount, 6> columns =
-      solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());
-  step.inverse = columns.template topRows<6>();
+  step.last = (step.gain < kSettled && taken >= std::max(plan.min_steps, plan.rough_steps + 1)) ||
+              taken >= plan.max_steps;
+  if (step.last) {
+    const Eigen::Matrix<double, kCount, 6> columns =
+        solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());
+    step.inverse = columns.template topRows<6>();
+  }
   return step;
 }
 
@@ -194,12 +201,15 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
   for (int taken = 1;; ++taken) {
     const PhotometricModel model = model_of(state, pattern, deviation);
     PhotometricSums sums;
-    add_outer_pixels(model, pixels_.outer(), unknowns, sums);
-    if (inside) add_inner_pixels(model, pixels_.inner(), unknowns, sums);
+    PixelColumns outer = pixels_.outer(), inner = pixels_.inner();
+    outer.every = inner.every = taken <= plan.rough_steps ? 2 : 1;
+    add_outer_pixels(model, outer, unknowns, sums);
+    if (inside) add_inner_pixels(model, inner, unknowns, sums);
     const Step step = unknowns == kFollowedUnknowns
-                          ? solve<kFollowedUnknowns>(state, pattern, look, sums)
-                      : unknowns == kCodeUnknowns ? solve<kCodeUnknowns>(state, pattern, look, sums)
-                                                  : solve<kUnknowns>(state, pattern, look, sums);
+                          ? solve<kFollowedUnknowns>(state, pattern, look, sums, plan, taken)
+                      : unknowns == kCodeUnknowns
+                          ? solve<kCodeUnknowns>(state, pattern, look, sums, plan, taken)
+                          : solve<kUnknowns>(state, pattern, look, sums, plan, taken);
     if (!step.change.allFinite()) return std::nullopt;
     deviation = std::max(0.5, std::sqrt(step.mean_square));
     state = advanced(state, step.change);
@@ -209,14 +219,13 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
         !(state.contrast > 0) || !(pose.normal().dot(pose.position) < 0)) {
       return std::nullopt;
     }
-    // A gain of one is a move by a standard deviation; what is then left is of the second order.
-    const bool settled = step.gain < kSettled && taken >= plan.min_steps;
-    if (settled || taken >= plan.max_steps) {
+    if (step.last) {
       PhotometricPose result;
       result.state = state;
       result.state.pose.orientation = with_positive_w(pose.orientation);
       result.mean_square = step.mean_square;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
+      result.trust = static_cast<double>(sums.weights) / result.pixels;
       result.covariance = to_camera_axes(state, step.mean_square * step.inverse);
       return result;
     }

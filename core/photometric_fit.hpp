@@ -50,6 +50,7 @@ struct PhotometricState {
 struct FitPlan {
   int unknowns = kPhotometricUnknowns;  // kFollowedUnknowns keeps the others as they are
   double deviation = 0;  // of the residuals, grey levels, as far as it can be foreseen
+  int rough_steps = 1;   // first ones, that use half of the pixels
   int min_steps = 2, max_steps = 6;
 };
 
@@ -59,6 +60,7 @@ struct PhotometricPose {
   PoseCovariance covariance = PoseCovariance::Zero();
   double mean_square = 0;  // of the residuals, grey levels squared
   int pixels = 0;          // that the fit used
+  double trust = 0;        // share of them that it believed: the rest looks like something else
 };
 
 // Fits a marker's pose to the grey values of its image (METHOD.md section 6): every pixel near an
@@ -91,7 +93,7 @@ class PhotometricFit {
   struct Step;
   template <int kCount>
   Step solve(const PhotometricState& state, const Pattern& pattern, const EdgeLook& look,
-             const PhotometricSums& sums) const;
+             const PhotometricSums& sums, const FitPlan& plan, int taken) const;
   PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
                             double deviation) const;
   PhotometricState advanced(const PhotometricState& state, const Vector& step) const;

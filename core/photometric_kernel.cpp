@@ -80,7 +80,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
   std::array<Float8, kColumns*(kColumns + 1) / 2> products{};
   Float8 weights = splat(0);
   Rows<kUnknowns> rows;
-  for (int i = 0; i < pixels.count; i += kPixelBlock) {
+  for (int i = 0; i < pixels.count; i += pixels.every * kPixelBlock) {
     for (int group = 0; group < kGroups; ++group) {
       const int at = i + group * simd::kLanes;
       const PlanePoint p = photometric::plane_point(m, load(pixels.x + at), load(pixels.y + at));

@@ -39,6 +39,7 @@ struct PixelColumns {
   const float* grey;    // linear in the light
   const float* weight;  // root of it: grey levels of noise a level of light; 0 for filling
   int count;
+  int every = 1;  // of so many blocks one is used: a rough step can do with a part of the marker
 };
 constexpr int kPixelBlock = 32;
 

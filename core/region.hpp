@@ -51,6 +51,12 @@ class RegionFiller {
 
   const Region& region() const { return region_; }
 
+  // Calls back with every dark run that the last fill came across, also when it was given up.
+  template <typename Use>
+  void for_each_run(const Use& use) const {
+    for (const StoredRun& stored : runs_) use(stored.run);
+  }
+
   // First and last pixel of every row of the last complete region, from box.v0 on.
   std::span<const Run> row_spans() const { return spans_; }
 

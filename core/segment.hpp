@@ -56,6 +56,12 @@ class SegmentFinder {
 
   const Segment& segment() const { return segment_; }
 
+  // Every dark run of the last candidate, also of one that was turned down.
+  template <typename Use>
+  void for_each_run(const Use& use) const {
+    filler_.for_each_run(use);
+  }
+
   // Rows of the last accepted segment's outline.
   std::span<const Run> row_spans() const { return filler_.row_spans(); }
 

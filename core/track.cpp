@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace roundel {
 
@@ -12,6 +13,15 @@ constexpr double kSameNormal = 0.03;
 // Evidence for a pose fades, because tilting changes both hypotheses; and it has an end.
 constexpr double kFading = 0.9, kMaxPoseLogOdds = 20;
 constexpr double kVelocityGain = 0.5;
+// What makes a track sure of its pose and of its id.
+constexpr double kSurePose = 10, kSureName = 0.9999;
+// Faster than that a robot does not turn, radians a frame; a flip of the pose does.
+constexpr double kMaxTurn = 0.3;
+
+Eigen::Vector3d turn_between(const Pose& before, const Pose& after) {
+  const Eigen::AngleAxisd turn(after.orientation * before.orientation.conjugate());
+  return std::remainder(turn.angle(), 2 * std::numbers::pi) * turn.axis();
+}
 
 }  // namespace
 
@@ -22,11 +32,25 @@ Ellipse Track::predicted() const {
   return expected;
 }
 
+bool Track::settled(int id_count) const {
+  if (missed != 0 || observation.pose_count == 0 || implausible > 0) return false;
+  const PoseHypothesis& pose = observation.poses[static_cast<std::size_t>(pose_index)];
+  if (!pose.state || pose.pattern.kind == Pattern::Kind::kUnknown) return false;
+  if (pose_log_odds < kSurePose && !poses_agree) return false;
+  if (pose.pattern.kind == Pattern::Kind::kPlain) return true;
+  const IdEvidence::Name name = evidence.best(id_count);
+  return name.id == observation.id && name.probability >= kSureName;
+}
+
 void Track::update(const Observation& seen_now, int id_count) {
   const Eigen::Vector2d moved(seen_now.segment.ellipse.u - ellipse.u,
                               seen_now.segment.ellipse.v - ellipse.v);
   if (observation.segment.threshold != 0) {  // not the first frame
     velocity += kVelocityGain * (moved / frames_since_seen() - velocity);
+  }
+  std::optional<Pose> pose_before;
+  if (missed <= 1 && observation.pose_count > 0) {
+    pose_before = observation.poses[static_cast<std::size_t>(pose_index)].pose;
   }
   observation = seen_now;
   ellipse = seen_now.segment.ellipse;
@@ -34,14 +58,28 @@ void Track::update(const Observation& seen_now, int id_count) {
   missed = 0;
   seen = true;
   implausible = seen_now.plausible ? 0 : implausible + 1;
+  // A picture that bears the known word out says as much for it as a reading.
   evidence.add(seen_now.id, seen_now.id_probability, id_count);
   if (seen_now.pose_count == 0) return;
+  weigh_poses(seen_now);
+  const Pose& pose = seen_now.poses[static_cast<std::size_t>(pose_index)].pose;
+  turn = pose_before ? turn_between(*pose_before, pose) : Eigen::Vector3d::Zero();
+  if (turn.norm() > kMaxTurn) turn.setZero();
+}
 
+// Which of an observation's poses continues the track, by the evidence of this and earlier frames.
+void Track::weigh_poses(const Observation& seen_now) {
+  if (seen_now.followed) {
+    pose_index = 0;
+    normal = seen_now.poses[0].pose.normal();
+    return;
+  }
   const auto normal_of = [&](std::size_t i) { return seen_now.poses[i].pose.normal(); };
   const double first_over_second =
       seen_now.poses[0].log_likelihood - seen_now.poses[1].log_likelihood;
   const double between = (normal_of(0) - normal_of(1)).norm();
-  if (normal.isZero() || between < kSameNormal) {
+  poses_agree = between < kSameNormal;
+  if (normal.isZero() || poses_agree) {
     pose_index = 0;
     pose_log_odds = std::max(first_over_second, kFading * pose_log_odds);
   } else {

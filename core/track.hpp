@@ -20,6 +20,8 @@ struct Track {
 
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of the pose published last; zero before
   double pose_log_odds = 0;  // for the branch that `normal` belongs to, over the other one
+  bool poses_agree = false;  // both branches were the same when they were last compared
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // a frame, rotation vector in camera axes
 
   Observation observation;  // of this frame, when `seen`
   bool seen = false;
@@ -29,9 +31,15 @@ struct Track {
   Ellipse predicted() const;
   int frames_since_seen() const { return missed > 1 ? missed : 1; }
 
+  // Whether id and pose are beyond doubt, so that nothing needs to be read and weighed anew.
+  bool settled(int id_count) const;
+
   // Takes over this frame's observation: place, motion, evidence for the id and for one of the
   // poses.
   void update(const Observation& seen_now, int id_count);
+
+ private:
+  void weigh_poses(const Observation& seen_now);
 };
 
 }  // namespace roundel

@@ -15,6 +15,7 @@ namespace {
 constexpr int kMaxMissed = 30;       // frames; then a track ends
 constexpr int kMaxImplausible = 15;  // frames; a blurred or half covered marker recovers
 constexpr int kNewcomerFrames = 5;   // a full search is spread over as many frames
+constexpr int kReadingInterval = 16;  // frames
 constexpr double kLocalReach = 2.0;  // of the search around an expected place, in diameters
 constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
 constexpr double kSameSize = 1.6;    // ratio of sizes of one marker in neighbouring frames
@@ -46,6 +47,7 @@ struct Tracker::Impl {
 
   void follow_tracks(const LumaView& frame);
   bool follow(const LumaView& frame, const Track& track);
+  Observation observe(const LumaView& frame, const Track& track);
   void search_nearby(const LumaView& frame, const Track& track);
   void find_newcomers(const LumaView& frame);
   void exchange_mistaken();
@@ -60,6 +62,7 @@ struct Tracker::Impl {
   std::vector<Segment> found;
   std::vector<Marker> markers;
   std::int64_t next_number = 1;
+  std::int64_t frames = 0;
   int band = 0;  // the part of the image searched for newcomers in this frame
 };
 
@@ -96,11 +99,26 @@ void Tracker::Impl::search_nearby(const LumaView& frame, const Track& track) {
   search.search(frame, area, spacing, static_cast<std::size_t>(parameters.max_markers), found);
 }
 
+// A settled track is fitted only; from time to time it is read and weighed anew like all others.
+Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
+  const Segment& segment = search.segment();
+  const bool its_turn = (frames + track.number) % kReadingInterval == 0;
+  if (!its_turn && track.settled(observer.id_count())) {
+    const auto& last = track.observation.poses[static_cast<std::size_t>(track.pose_index)];
+    if (auto followed = observer.follow(frame, segment, last, track.ellipse, track.turn)) {
+      followed->id = track.observation.id;
+      followed->id_probability = track.observation.id_probability;
+      return *followed;
+    }
+  }
+  return observer.observe(frame, segment);
+}
+
 void Tracker::Impl::follow_tracks(const LumaView& frame) {
   for (Track& track : tracks) {
     track.seen = false;
     if (track.missed == 0 && follow(frame, track)) {
-      track.update(observer.observe(frame, search.segment()), observer.id_count());
+      track.update(observe(frame, track), observer.id_count());
     }
   }
   // Only after every track that is where it should be has claimed its pixels.
@@ -218,6 +236,7 @@ Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 std::span<const Marker> Tracker::track(const LumaView& frame) {
   Impl& self = *impl_;
   check_frame(frame, self.observer.camera());
+  ++self.frames;
   self.search.begin(frame);
   self.found.clear();
   self.follow_tracks(frame);

@@ -49,12 +49,13 @@ void Broadcast::retry(std::int64_t now_ns) {
   if (open()) log_info("LCM: the network is there, poses go out to {}", settings_.url);
 }
 
-void Broadcast::publish(const FrameInformation& information, std::span<const Marker> markers) {
+void Broadcast::publish(const FrameInformation& information, std::span<const Marker> markers,
+                        std::span<const ArenaPose> arena) {
   if (!publisher_) {
     ++frames_without_network_;
     return;
   }
-  publisher_->publish(information, markers);
+  publisher_->publish(information, markers, arena);
   note_sending(publisher_->sending());
 }
 

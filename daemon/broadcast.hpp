@@ -23,7 +23,8 @@ class Broadcast {
   const LcmSettings& settings() const { return settings_; }
 
   // Both do nothing but count while the network is not there.
-  void publish(const FrameInformation& information, std::span<const Marker> markers);
+  void publish(const FrameInformation& information, std::span<const Marker> markers,
+               std::span<const ArenaPose> arena = {});
   void publish(const status_t& status);
 
   // To be called now and then: tries to open again when it is time.

@@ -18,11 +18,20 @@ namespace {
 
 constexpr std::int64_t kStatusPeriodNs = 1'000'000'000;
 
+void copy(const LumaView& from, GreyImage& to) {
+  to.resize(from.width, from.height);
+  for (int v = 0; v < from.height; ++v) {
+    std::uint8_t* const row =
+        to.pixels.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(from.width);
+    for (int u = 0; u < from.width; ++u) row[u] = from.at(u, v);
+  }
+}
+
 // The keys that a source is made from; beginnings of them.
 std::initializer_list<std::string_view> source_sections(SourceKind kind) {
   // Robots wear the markers of the configuration.
-  static const std::initializer_list<std::string_view> simulator = {"simulator.", "marker.",
-                                                                    "camera.calibration"};
+  static const std::initializer_list<std::string_view> simulator = {
+      "simulator.", "marker.diameter", "marker.bits", "marker.hamming", "camera.calibration"};
   static const std::initializer_list<std::string_view> files = {"files."};
   static const std::initializer_list<std::string_view> camera = {
       "camera.device",     "camera.match_", "camera.format",  "camera.width",  "camera.height",
@@ -71,6 +80,7 @@ int Daemon::run() {
       if (event == SignalEvent::kReload) reload();
     }
     if (wakeup.status && status_timer_.take()) publish_status();
+    if (wakeup.command) control_.commands().run(*this);
     if (wakeup.frame && !carry_frame()) break;
   }
   publish_status();
@@ -86,13 +96,15 @@ int Daemon::run() {
 }
 
 Daemon::Wakeup Daemon::wait() {
-  std::array<pollfd, 3> descriptors = {{{signals_.descriptor(), POLLIN, 0},
+  std::array<pollfd, 4> descriptors = {{{signals_.descriptor(), POLLIN, 0},
                                         {status_timer_.descriptor(), POLLIN, 0},
+                                        {control_.commands().descriptor(), POLLIN, 0},
                                         {parts_.source->descriptor(), POLLIN, 0}}};
   if (::poll(descriptors.data(), descriptors.size(), -1) < 0 && errno != EINTR) {
     throw std::system_error(errno, std::generic_category(), "poll");
   }
-  return {descriptors[0].revents != 0, descriptors[1].revents != 0, descriptors[2].revents != 0};
+  return {descriptors[0].revents != 0, descriptors[1].revents != 0, descriptors[2].revents != 0,
+          descriptors[3].revents != 0};
 }
 
 // The way of a frame: take the newest, track, give back, publish.
@@ -109,7 +121,11 @@ bool Daemon::carry_frame() {
     fit_tracker(frame.luma.width, frame.luma.height);
   }
   const std::span<const Marker> markers = parts_.tracker->track(frame.luma);
+  FrameSnapshot& snapshot = control_.next_snapshot();
+  snapshot.has_picture = control_.wants_picture();
+  if (snapshot.has_picture) copy(frame.luma, snapshot.picture);
   lease->give_back();
+  const std::span<const ArenaPose> arena = arena_.locate(markers);
   times.tracked_us = now().mono_us;
 
   information_.frame = frame.number;
@@ -117,10 +133,21 @@ bool Daemon::carry_frame() {
   information_.captured = frame.captured;
   information_.stamp_source = frame.stamp_source;
   information_.tracking_us = static_cast<double>(times.tracked_us - times.arrived_us);
-  parts_.broadcast->publish(information_, markers);
+  parts_.broadcast->publish(information_, markers, arena);
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
+  leave_snapshot(markers, arena);
   return true;
+}
+
+// For everything that happens beside the frames. Copies into memory that is kept.
+void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena) {
+  FrameSnapshot& snapshot = control_.next_snapshot();
+  snapshot.information = information_;
+  snapshot.markers.assign(markers.begin(), markers.end());
+  snapshot.arena.assign(arena.begin(), arena.end());
+  snapshot.context = arena_.context();
+  control_.offer_snapshot();
 }
 
 // Subscribers hear of a lost camera at once. What was tracked before it was lost is not expected
@@ -129,7 +156,10 @@ void Daemon::take_state() {
   const CameraState before = information_.camera;
   information_.camera = parts_.source->state();
   status_.source = parts_.source->description();
-  if (before == CameraState::kLost) parts_.tracker->reset();
+  if (before == CameraState::kLost) {
+    parts_.tracker->reset();
+    fit_arena();
+  }
   if (information_.camera == CameraState::kLost || before == CameraState::kLost) publish_status();
 }
 
@@ -143,6 +173,7 @@ void Daemon::fit_tracker(int width, int height) {
   information_.calibration = fits     ? CalibrationState::kValid
                              : camera ? CalibrationState::kOtherResolution
                                       : CalibrationState::kNone;
+  fit_arena();
   if (information_.calibration == before) return;
   parts_.tracker.emplace(make_tracker(parts_.configuration, fits ? camera : std::nullopt));
   begin_session();
@@ -151,6 +182,57 @@ void Daemon::fit_tracker(int width, int height) {
     log_error("calibrated at {}x{}, but frames are {}x{} now: no poses for these", camera->width,
               camera->height, width, height);
   }
+}
+
+void Daemon::load_arena_file() {
+  const std::string& path = parts_.configuration.values.arena.file;
+  if (path == arena_file_) return;
+  arena_file_ = path;
+  arena_calibration_ = load_arena(path, arena_file_problem_);
+}
+
+// Which arena coordinates there can be, with this source, lens, resolution and calibration.
+void Daemon::fit_arena() {
+  const Configuration& values = parts_.configuration.values;
+  auto context = std::make_shared<TrackingContext>();
+  context->camera_name = values.camera.name;
+  if (information_.calibration == CalibrationState::kValid) context->camera = parts_.camera;
+  context->diameter_m = values.detector.diameter_m;
+  context->mode = values.arena.mode == "3d" ? ArenaMode::k3D : ArenaMode::k2D;
+  context->arena_file = values.arena.file;
+  context->recalibrate = values.arena.recalibrate;
+  context->arena_camera.identity = parts_.source->identity();
+  context->arena_camera.crop = parts_.source->crop();
+  if (context->camera) context->arena_camera.intrinsics = *context->camera;
+  context->calibration = arena_calibration_;
+  context->problem = arena_file_problem_;
+  if (arena_calibration_) {
+    context->problem = context->camera ? mismatch(arena_calibration_->camera, context->arena_camera)
+                                       : "the camera's intrinsics are not known at this resolution";
+  }
+  if (!context->problem.empty() && context->problem != told_arena_problem_) {
+    log_warning("arena: the calibration in {} is not used: {}", values.arena.file,
+                context->problem);
+  }
+  told_arena_problem_ = context->problem;
+  arena_.configure(std::move(context), values.mount);
+  information_.arena = arena_.state();
+  information_.arena_mode = arena_.mode();
+}
+
+void Daemon::set_arena(std::shared_ptr<const ArenaCalibration> calibration) {
+  arena_calibration_ = std::move(calibration);
+  arena_file_problem_.clear();
+  fit_arena();
+}
+
+void Daemon::set_arena_moved(bool moved) {
+  arena_.set_moved(moved);
+  information_.arena = arena_.state();
+}
+
+std::shared_ptr<CameraControls> Daemon::camera_controls() {
+  return parts_.source->controls();
 }
 
 void Daemon::publish_status() {
@@ -176,8 +258,10 @@ void Daemon::publish_status() {
   status_.camera_state = header.camera_state;
   status_.calibration_state = header.calibration_state;
   status_.arena_state = header.arena_state;
+  status_.arena_mode = header.arena_mode;
   status_.simulated = header.simulated;
   parts_.broadcast->publish(status_);
+  control_.offer(status_);
 }
 
 // Takes parts that are ready to work. Does not fail.
@@ -194,7 +278,10 @@ void Daemon::start(Parts parts) {
   status_.source = parts_.source->description();
   status_.url = parts_.configuration.values.lcm.url;
   status_.version = ROUNDEL_VERSION;
+  load_arena_file();
+  fit_arena();
   begin_session();
+  control_.serve(parts_.configuration.values.control);
   log_summary();
 }
 
@@ -221,7 +308,7 @@ void Daemon::log_summary() const {
 }
 
 // A reload is whole or does not happen: what changed is made first, then taken.
-void Daemon::reload() {
+std::string Daemon::reload() {
   // True if a key of these sections changed.
   std::vector<std::string_view> changed;
   const auto touches = [&](std::initializer_list<std::string_view> sections) {
@@ -235,18 +322,20 @@ void Daemon::reload() {
     next.configuration = load_();
     changed = changed_keys(parts_.configuration.values, next.configuration.values);
     const Configuration& values = next.configuration.values;
+    // How robots wear their markers is another matter.
+    const bool other_markers = touches({"marker.diameter", "marker.bits", "marker.hamming"});
     const bool new_source = touches({"source"}) || touches(source_sections(values.source));
     if (new_source) next.source = make_source(next.configuration);
     next.camera = make_camera(next.configuration, next.source ? *next.source : *parts_.source);
     const bool new_camera = !same_camera(next.camera, parts_.camera);
-    const bool new_tracker = new_source || new_camera || touches({"marker.", "detector."});
+    const bool new_tracker = new_source || new_camera || other_markers || touches({"detector."});
     if (new_tracker) next.tracker.emplace(make_tracker(next.configuration, next.camera));
     if (touches({"lcm.", "camera.name"})) {
       next.broadcast.emplace(make_broadcast(next.configuration));
     }
     if (changed.empty() && !new_camera) {
       log_info("reloaded: nothing has changed");
-      return;
+      return {};
     }
     log_info("reloaded: {} changed", new_camera && changed.empty()
                                          ? std::string("the calibration")
@@ -256,8 +345,10 @@ void Daemon::reload() {
     if (!next.tracker) next.tracker = std::move(parts_.tracker);
     if (!next.broadcast) next.broadcast = std::move(parts_.broadcast);
     start(std::move(next));
+    return {};
   } catch (const std::exception& error) {
     log_error("{}; the configuration in use stays", error.what());
+    return error.what();
   }
 }
 

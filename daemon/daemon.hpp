@@ -7,7 +7,9 @@
 
 #include "config/reader.hpp"
 #include "core/tracker.hpp"
+#include "daemon/arena_stage.hpp"
 #include "daemon/broadcast.hpp"
+#include "daemon/control/control_center.hpp"
 #include "daemon/frame_source.hpp"
 #include "daemon/monotonic_timer.hpp"
 #include "daemon/signal_descriptor.hpp"
@@ -17,7 +19,7 @@ namespace roundel {
 
 // roundeld without its command line: carries frames from the source to the network on one thread,
 // until a signal or the end of a recording.
-class Daemon {
+class Daemon final : private LoopControl {
  public:
   // Reads the configuration; called again for every reload.
   using Load = std::function<LoadedConfiguration()>;
@@ -39,17 +41,23 @@ class Daemon {
   };
 
   void start(Parts parts);
-  void reload();
+  std::string reload() override;
+  void set_arena(std::shared_ptr<const ArenaCalibration> calibration) override;
+  void set_arena_moved(bool moved) override;
+  std::shared_ptr<CameraControls> camera_controls() override;
   void begin_session();
   void log_summary() const;
 
   struct Wakeup {
-    bool signal = false, status = false, frame = false;
+    bool signal = false, status = false, command = false, frame = false;
   };
   Wakeup wait();
   bool carry_frame();  // false at the end of the source
   void take_state();
   void fit_tracker(int width, int height);
+  void load_arena_file();
+  void fit_arena();
+  void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena);
   void publish_status();
 
   Load load_;
@@ -63,6 +71,13 @@ class Daemon {
   std::int64_t dropped_before_session_ = 0;
   std::int64_t unsent_before_session_ = 0;
   bool told_of_other_resolution_ = false;
+
+  std::string arena_file_;  // that was read
+  std::string arena_file_problem_;
+  std::shared_ptr<const ArenaCalibration> arena_calibration_;
+  std::string told_arena_problem_;
+  ArenaStage arena_;
+  ControlCenter control_;  // last: its threads end first
 };
 
 }  // namespace roundel

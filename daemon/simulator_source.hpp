@@ -25,6 +25,7 @@ class SimulatorSource final : public FrameSource {
   int height() const override { return arena_.camera().height; }
   bool simulated() const override { return true; }
   std::string description() const override;
+  std::string identity() const override { return "simulator"; }
   std::optional<CameraModel> camera() const override { return arena_.camera(); }
 
  private:

@@ -10,12 +10,11 @@ void add_board_options(CLI::App& command, Board& board) {
   command.add_option("--columns", board.columns, "Of the board")->capture_default_str();
   command.add_option("--rows", board.rows, "Of the board")->capture_default_str();
   command
-      .add_option("--spacing", board.spacing_m,
-                  "Between the centres of neighbours, metres; only its ratio to the diameter "
-                  "matters")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command.add_option("--diameter", board.diameter_m, "Outer black diameter of a marker, metres")
+      .add_option(
+          "--spacing", board.spacing_m,
+          "Between the centres of neighbours, metres; the camera does not depend on it, but "
+          "what is said about the print does")
+      ->check(CLI::Range(1e-4, 10.0))
       ->type_name("METRES")
       ->capture_default_str();
   command.add_option("--bits", board.bits, "WhyCode bits, 2 to 16")->capture_default_str();
@@ -23,8 +22,9 @@ void add_board_options(CLI::App& command, Board& board) {
       ->capture_default_str();
 }
 
-const Board& checked_board(const Board& board) {
+Board checked_board(Board board) {
   try {
+    board.diameter_m = kBoardDiameterRatio * board.spacing_m;
     return checked(board);
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());

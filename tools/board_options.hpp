@@ -6,12 +6,11 @@
 
 namespace roundel {
 
-// --columns, --rows, --spacing, --diameter, --bits, --hamming of a board that has been printed. The
-// size of the print does not matter to a camera calibration, only the diameter's ratio to the
-// spacing, so a board at another scale needs none of them.
+// --columns, --rows, --spacing, --bits, --hamming of a board that has been printed. Its size does
+// not matter to a camera calibration, nor does that of the markers.
 void add_board_options(CLI::App& command, Board& board);
 
-// The board if it can be; otherwise UsageError.
-const Board& checked_board(const Board& board);
+// The board with markers of the usual size; UsageError if it can't be.
+Board checked_board(Board board);
 
 }  // namespace roundel

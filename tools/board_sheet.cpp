@@ -63,10 +63,10 @@ void draw_board_sheet(cairo_t* context, const SheetLayout& layout, const Board& 
   }
   draw_sheet_foot(
       context, layout, "Glue it to something flat and stiff. Its size does not matter.",
-      fmt::format("roundel calibrate camera --columns {} --rows {} --spacing {:.6g} --diameter "
-                  "{:.6g} --bits {} --hamming {} -o camera.yaml PICTURES",
-                  board.columns, board.rows, board.spacing_m, board.diameter_m, board.bits,
-                  board.hamming));
+      fmt::format("roundel calibrate camera --columns {} --rows {} --spacing {:.6g} --bits {}{} -o "
+                  "camera.yaml PICTURES",
+                  board.columns, board.rows, board.spacing_m, board.bits,
+                  board.hamming > 1 ? fmt::format(" --hamming {}", board.hamming) : ""));
 }
 
 }  // namespace roundel

@@ -11,12 +11,12 @@
 #include "calibration/camera_file.hpp"
 #include "calibration/view_advice.hpp"
 #include "calibration/view_collector.hpp"
+#include "daemon/json_frame.hpp"
 #include "tools/board_options.hpp"
 #include "tools/calibrate.hpp"
 #include "tools/camera_report.hpp"
 #include "tools/commands.hpp"
 #include "tools/frame_input.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {
@@ -44,19 +44,19 @@ void check_size(const GreyImage& frame, const ViewCollector& collector, const Fr
 }
 
 // Looks at all frames: pictures are taken as somebody chose them, from videos the good ones.
-ViewCollector collect(const CalibrateCameraOptions& options, CameraReport& report) {
-  FrameInput input(options.files);
+ViewCollector collect(const std::vector<std::string>& files, CameraReport& report) {
+  FrameInput input(files);
   std::optional<ViewCollector> collector;
   GreyImage frame;
   while (input.next(frame)) {
-    if (!collector) collector.emplace(options.board, frame.width, frame.height);
+    if (!collector) collector.emplace(report.board, frame.width, frame.height);
     check_size(frame, *collector, input);
     const std::string name = name_of(input);
-    const auto verdict = input.from_video() ? collector->offer(frame.view(), name)
+    const auto outcome = input.from_video() ? collector->offer(frame.view(), name)
                                             : collector->take(frame.view(), name);
     const bool used =
-        verdict == ViewCollector::Verdict::kTaken || verdict == ViewCollector::Verdict::kReplaced;
-    if (!used && !input.from_video()) report.skipped.push_back({name, describe(verdict)});
+        outcome == ViewCollector::Outcome::kTaken || outcome == ViewCollector::Outcome::kReplaced;
+    if (!used && !input.from_video()) report.skipped.push_back({name, describe(outcome)});
   }
   if (!collector) throw std::runtime_error("the video has no frame");
   return std::move(*collector);
@@ -83,8 +83,8 @@ std::string today() {
 void calibrate_camera(const CalibrateCameraOptions& options) {
   CameraReport report;
   report.board = checked_board(options.board);
-  const ViewCollector collector = collect(options, report);
-  require_board(collector.tally(), options.board);
+  const ViewCollector collector = collect(options.files, report);
+  require_board(collector.tally(), report.board);
   std::vector<LumaView> pictures;
   std::vector<BoardView> views;
   for (const CollectedView& view : collector.views()) {
@@ -92,11 +92,12 @@ void calibrate_camera(const CalibrateCameraOptions& options) {
     views.push_back(view.sighting.view);
     report.sources.push_back(view.name);
   }
-  require_views(views, collector.width(), collector.height());
+  require_views(views, static_cast<std::size_t>(collector.tally().pictures), collector.width(),
+                collector.height());
   IntrinsicOptions intrinsic;
   intrinsic.estimate_k3 = !options.no_k3;
   intrinsic.exact_board = options.exact_board;
-  report.calibration = calibrate_from_pictures(pictures, options.board, intrinsic);
+  report.calibration = calibrate_from_pictures(pictures, report.board, intrinsic);
   const CameraModel& camera = report.calibration.result.camera;
   report.advice = view_advice(views, camera);
   tell_left_out(report);

@@ -7,9 +7,9 @@
 
 #include "daemon/capture/camera_mode.hpp"
 #include "daemon/capture/device_controls.hpp"
+#include "daemon/json_frame.hpp"
 #include "tools/commands.hpp"
 #include "tools/json_camera.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {

@@ -19,6 +19,10 @@ void add_compare(CLI::App& app);
 void add_markers(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_listen(CLI::App& app);
+void add_status(CLI::App& app);
+void add_reload(CLI::App& app);
+void add_snapshot(CLI::App& app);
+void add_controls(CLI::App& app);
 void add_cameras(CLI::App& app);
 
 }  // namespace roundel

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "daemon/json_frame.hpp"
 #include "tools/commands.hpp"
 #include "tools/comparison_output.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/json_lines.hpp"
 #include "tools/json_truth.hpp"
 #include "tools/standard_output.hpp"

@@ -26,8 +26,26 @@ std::shared_ptr<DetectionOptions> add_detection_options(CLI::App& command,
       ->capture_default_str();
   command
       .add_option("--arena", options->arena_file,
-                  "Arena calibration: adds arena coordinates (not supported yet)")
+                  "Arena calibration (roundel calibrate arena): adds arena coordinates")
       ->type_name("FILE");
+  command
+      .add_option("--arena-mode", options->arena_mode,
+                  "2d: markers at a known height above the floor; 3d: anywhere")
+      ->check(CLI::IsMember({"2d", "3d"}))
+      ->capture_default_str();
+  command
+      .add_option("--marker-height", options->mount.height,
+                  "Of the markers above the floor, metres; 2d only")
+      ->check(CLI::Range(0.0, 10.0))
+      ->type_name("METRES")
+      ->capture_default_str();
+  command
+      .add_option("--mount", options->mount.mounts,
+                  "A robot that wears its marker in another way, as in \"7 height=0.12\"; may be "
+                  "repeated")
+      ->type_name("TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--max-markers", parameters.max_markers, "More are not reported")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()))
       ->type_name("N")

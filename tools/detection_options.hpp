@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "config/configuration.hpp"
 #include "core/camera_model.hpp"
 #include "core/detector_parameters.hpp"
 
@@ -16,7 +17,9 @@ struct DetectionOptions {
   std::vector<std::string> files;
   std::string camera_file;  // empty: no poses
   std::string arena_file;   // empty: no arena coordinates
-  std::string annotate;     // PNG file or directory; empty: no pictures
+  std::string arena_mode = "2d";
+  MountSettings mount;
+  std::string annotate;  // PNG file or directory; empty: no pictures
   bool json = false;
   DetectorParameters parameters;
 };

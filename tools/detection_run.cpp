@@ -7,12 +7,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "calibration/arena_file.hpp"
+#include "calibration/arena_map.hpp"
 #include "calibration/camera_file.hpp"
+#include "config/mounts.hpp"
+#include "daemon/draw_markers.hpp"
+#include "daemon/json_frame.hpp"
 #include "tools/commands.hpp"
-#include "tools/draw_markers.hpp"
 #include "tools/frame_input.hpp"
 #include "tools/frame_text.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {
@@ -86,6 +89,49 @@ class SizeCheck {
   int width_ = 0, height_ = 0;
 };
 
+// Options that go together, before anything is read.
+void check_arena_options(const DetectionOptions& options) {
+  if (!options.arena_file.empty() && options.camera_file.empty()) {
+    throw UsageError("--arena needs --camera: without intrinsics there are no poses");
+  }
+  for (const std::string& mount : options.mount.mounts) {
+    if (!parse_mount(mount, {})) {
+      throw UsageError(fmt::format(
+          "--mount {}: must be an id with height, offset_x, offset_y or rotation, as in \"7 "
+          "height=0.12\"",
+          mount));
+    }
+  }
+}
+
+// From the camera to the arena, for recorded frames: which camera took them is not known, but
+// resolution and lens must be those of the calibration.
+class ArenaCoordinates {
+ public:
+  ArenaCoordinates(const DetectionOptions& options, const CameraModel& camera) {
+    const ArenaCalibration calibration = read_arena_file(options.arena_file);
+    const std::string why = mismatch(calibration.camera, {"", "", camera});
+    if (!why.empty()) {
+      throw std::runtime_error(
+          fmt::format("{} is not for {}: {}", options.arena_file, options.camera_file, why));
+    }
+    map_.emplace(calibration, options.arena_mode == "3d" ? ArenaMode::k3D : ArenaMode::k2D,
+                 marker_mounts(options.mount));
+  }
+
+  std::span<const ArenaPose> locate(std::span<const Marker> markers) {
+    poses_.clear();
+    for (const Marker& marker : markers) {
+      poses_.push_back(map_->locate(marker));
+    }
+    return poses_;
+  }
+
+ private:
+  std::optional<ArenaMap> map_;
+  std::vector<ArenaPose> poses_;
+};
+
 FindMarkers checked_finder(const MakeFinder& make_finder, const DetectionOptions& options,
                            const std::optional<CameraModel>& camera) {
   try {
@@ -99,9 +145,7 @@ FindMarkers checked_finder(const MakeFinder& make_finder, const DetectionOptions
 
 void run_detection(const DetectionOptions& options, FrameSizes sizes,
                    const MakeFinder& make_finder) {
-  if (!options.arena_file.empty()) {
-    throw UsageError("--arena is not supported yet");
-  }
+  check_arena_options(options);
   FrameInput input(options.files);
   const AnnotatedPath annotated(options.annotate, input);
   checked_finder(make_finder, options, std::nullopt);  // parameters out of range: before waiting
@@ -114,6 +158,10 @@ void run_detection(const DetectionOptions& options, FrameSizes sizes,
   if (!options.camera_file.empty()) {
     camera = read_camera_file(options.camera_file).camera;
   }
+  std::optional<ArenaCoordinates> coordinates;
+  if (!options.arena_file.empty()) {
+    coordinates.emplace(options, *camera);
+  }
   const FindMarkers find = checked_finder(make_finder, options, camera);
   SizeCheck size_check(sizes, camera, options.camera_file);
   for (; more; more = input.next(frame)) {
@@ -122,8 +170,11 @@ void run_detection(const DetectionOptions& options, FrameSizes sizes,
     const std::span<const Marker> markers = find(frame.view());
     const std::chrono::duration<double, std::micro> elapsed =
         std::chrono::steady_clock::now() - start;
+    const std::span<const ArenaPose> arena =
+        coordinates ? coordinates->locate(markers) : std::span<const ArenaPose>();
     const FrameInfo info{input.source(), input.frame(), input.utime(), elapsed.count()};
-    print(options.json ? json_line(frame_json(info, markers)) : frame_text(info, markers));
+    print(options.json ? json_line(frame_json(info, markers, arena))
+                       : frame_text(info, markers, arena));
     if (annotated.wanted()) {
       save_annotated_png(annotated.of(input), frame.view(), markers, camera,
                          options.parameters.diameter_m);

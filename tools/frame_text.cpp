@@ -18,12 +18,14 @@ double tilt(const Pose& pose) {
 
 }  // namespace
 
-std::string frame_text(const FrameInfo& info, std::span<const Marker> markers) {
+std::string frame_text(const FrameInfo& info, std::span<const Marker> markers,
+                       std::span<const ArenaPose> arena) {
   if (markers.empty()) {
     return fmt::format("{} frame {}: no marker\n", info.source, info.frame);
   }
   std::string text;
-  for (const Marker& marker : markers) {
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    const Marker& marker = markers[i];
     auto out = std::back_inserter(text);
     fmt::format_to(out, "{} frame {}: ", info.source, info.frame);
     if (marker.track > 0) {
@@ -40,6 +42,14 @@ std::string frame_text(const FrameInfo& info, std::span<const Marker> markers) {
       const Eigen::Vector3d& p = marker.pose.position;
       fmt::format_to(out, "  x {:+.4f} y {:+.4f} z {:.4f} m  tilt {:.1f} deg  ambiguity {:.2f}",
                      p.x(), p.y(), p.z(), kDegrees * tilt(marker.pose), marker.ambiguity);
+    }
+    if (!arena.empty() && arena[i].valid) {
+      const ArenaPose& place = arena[i];
+      fmt::format_to(out, "  arena {:.4f} {:.4f} {:.4f} m", place.position.x(), place.position.y(),
+                     place.position.z());
+      if (marker.id >= 0) {
+        fmt::format_to(out, "  heading {:.1f} deg", kDegrees * place.heading);
+      }
     }
     text += '\n';
   }

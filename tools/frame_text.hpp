@@ -4,11 +4,12 @@
 #include <string>
 
 #include "core/marker.hpp"
-#include "tools/json_frame.hpp"
+#include "daemon/json_frame.hpp"
 
 namespace roundel {
 
 // A frame for human eyes: one line a marker, each with its end; one line where there is none.
-std::string frame_text(const FrameInfo& info, std::span<const Marker> markers);
+std::string frame_text(const FrameInfo& info, std::span<const Marker> markers,
+                       std::span<const ArenaPose> arena = {});
 
 }  // namespace roundel

@@ -1,5 +1,7 @@
 #include "tools/json_camera.hpp"
 
+#include "daemon/control/controls_json.hpp"
+
 namespace roundel {
 namespace {
 
@@ -15,23 +17,6 @@ Json format_json(const OfferedFormat& format) {
   for (const OfferedSize& size : format.sizes) {
     json["sizes"].push_back(
         {{"width", size.width}, {"height", size.height}, {"frame_rates", size.frame_rates}});
-  }
-  return json;
-}
-
-Json control_json(const Control& control) {
-  Json json = {{"name", control.name},
-               {"label", control.label},
-               {"type", std::string(name_of(control.type))},
-               {"value", control.value},
-               {"default", control.default_value},
-               {"minimum", control.minimum},
-               {"maximum", control.maximum},
-               {"step", control.step},
-               {"read_only", control.read_only},
-               {"inactive", control.inactive}};
-  for (const Control::MenuItem& item : control.menu) {
-    json["menu"].push_back({{"value", item.index}, {"name", item.name}});
   }
   return json;
 }

@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "tools/json_fields.hpp"
-#include "tools/json_frame.hpp"
+#include "daemon/json_fields.hpp"
+#include "daemon/json_frame.hpp"
 
 namespace roundel {
 namespace {

@@ -11,9 +11,9 @@
 #include <memory>
 #include <optional>
 
+#include "daemon/json_frame.hpp"
 #include "daemon/signal_descriptor.hpp"
 #include "tools/commands.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/pose_table.hpp"
 #include "transport/lcm_url.hpp"
 #include "transport/subscriber.hpp"
@@ -55,17 +55,13 @@ Json received_json(const ReceivedFrame& frame, const ReceptionCounts& counts,
                    std::int64_t received_utime) {
   const header_t& header = frame.header;
   std::vector<Marker> markers;
-  for (const marker_t& marker : frame.markers) markers.push_back(from_message(marker));
-  Json json =
-      frame_json({frame.camera, header.frame, header.capture_utime, header.tracking_us}, markers);
-  for (std::size_t i = 0; i < markers.size(); ++i) {
-    const marker_t& marker = frame.markers[i];
-    if (marker.has_arena == 0) continue;
-    json["markers"][i]["arena"] = {{"x", marker.arena_x},
-                                   {"y", marker.arena_y},
-                                   {"z", marker.arena_z},
-                                   {"heading", marker.arena_heading}};
+  std::vector<ArenaPose> arena;
+  for (const marker_t& marker : frame.markers) {
+    markers.push_back(from_message(marker));
+    arena.push_back(arena_from_message(marker));
   }
+  Json json = frame_json({frame.camera, header.frame, header.capture_utime, header.tracking_us},
+                         markers, arena);
   shorten_numbers(json);
   json["session"] = header.session;
   json["publish_utime"] = header.publish_utime;

@@ -51,6 +51,10 @@ int run(int argc, char** argv) {
   roundel::add_markers(app);
   roundel::add_calibrate(app);
   roundel::add_listen(app);
+  roundel::add_status(app);
+  roundel::add_reload(app);
+  roundel::add_snapshot(app);
+  roundel::add_controls(app);
   roundel::add_cameras(app);
   try {
     app.parse(argc, argv);

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "daemon/cairo_pointer.hpp"
 #include "daemon/image_file.hpp"
-#include "tools/cairo_pointer.hpp"
 
 namespace roundel {
 namespace {

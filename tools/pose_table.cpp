@@ -39,10 +39,24 @@ std::string row_text(const marker_t& message, double rate) {
   text += fmt::format(" {:8.3f} {:8.3f} {:8.3f} {:>7} {:8.2f} {:6.1f}", p.x(), p.y(), p.z(), yaw,
                       marker.sigma_position.norm() * 1000, rate);
   if (message.has_arena != 0) {
-    text += fmt::format("  {:8.3f} {:8.3f} {:8.3f} {:7.1f}", message.arena_x, message.arena_y,
-                        message.arena_z, message.arena_heading * kDegrees);
+    const std::string heading =
+        marker.id < 0 ? "-" : fmt::format("{:.1f}", message.arena_heading * kDegrees);
+    text += fmt::format("  {:8.3f} {:8.3f} {:8.3f} {:>7}", message.arena_x, message.arena_y,
+                        message.arena_z, heading);
   }
   return text + "\n";
+}
+
+// What is wrong with the arena's calibration, if anything is.
+const char* arena_text(int state) {
+  switch (state) {
+    case header_t::ARENA_OTHER_CAMERA:
+      return ", arena calibration not used (roundel status)";
+    case header_t::ARENA_MOVED:
+      return ", CAMERA MOVED since the arena was calibrated";
+    default:
+      return "";
+  }
 }
 
 const char* calibration_text(int state) {
@@ -92,11 +106,12 @@ void PoseTable::end_period(std::int64_t now_us) {
 
 std::string PoseTable::heading() const {
   return fmt::format(
-      "{}{}, {}x{}, {}; frame {}, {:.1f} frames/s, latency {:.1f} ms, tracking {:.2f} ms, dropped "
+      "{}{}, {}x{}, {}{}; frame {}, {:.1f} frames/s, latency {:.1f} ms, tracking {:.2f} ms, "
+      "dropped "
       "{}, lost {}\n",
       camera_, header_.simulated != 0 ? " (simulated)" : "", header_.width, header_.height,
-      calibration_text(header_.calibration_state), header_.frame, rate_, latency_ms_,
-      header_.tracking_us / 1000, header_.dropped, counts_.lost);
+      calibration_text(header_.calibration_state), arena_text(header_.arena_state), header_.frame,
+      rate_, latency_ms_, header_.tracking_us / 1000, header_.dropped, counts_.lost);
 }
 
 std::string PoseTable::text(std::size_t max_rows, std::int64_t now_us) {
@@ -106,10 +121,9 @@ std::string PoseTable::text(std::size_t max_rows, std::int64_t now_us) {
   std::sort(rows_.begin(), rows_.end(),
             [](const Row& a, const Row& b) { return order(a.marker) < order(b.marker); });
   std::string text = heading();
-  text += fmt::format(
-      "{:>5} {:>6} {:>7} {:>7} {:>8} {:>8} {:>8} {:>7} {:>8} {:>6}{}\n", "id", "track", "u", "v",
-      "x m", "y m", "z m", "yaw", "sigma mm", "Hz",
-      header_.arena_state == header_t::ARENA_VALID ? "   arena x        y        z heading" : "");
+  text += fmt::format("{:>5} {:>6} {:>7} {:>7} {:>8} {:>8} {:>8} {:>7} {:>8} {:>6}{}\n", "id",
+                      "track", "u", "v", "x m", "y m", "z m", "yaw", "sigma mm", "Hz",
+                      header_.arena_mode != 0 ? "   arena x        y        z heading" : "");
   const std::size_t shown = std::min(max_rows, rows_.size());
   for (std::size_t i = 0; i < shown; ++i) text += row_text(rows_[i].marker, rows_[i].rate);
   if (shown < rows_.size()) text += fmt::format("... and {} more\n", rows_.size() - shown);

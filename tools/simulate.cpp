@@ -15,6 +15,7 @@
 #include "core/necklace.hpp"
 #include "daemon/file_pointer.hpp"
 #include "daemon/image_file.hpp"
+#include "daemon/json_frame.hpp"
 #include "simulator/arena.hpp"
 #include "simulator/arena_camera.hpp"
 #include "simulator/random.hpp"
@@ -23,7 +24,6 @@
 #include "tools/commands.hpp"
 #include "tools/frame_output.hpp"
 #include "tools/id_list.hpp"
-#include "tools/json_frame.hpp"
 #include "tools/json_truth.hpp"
 
 namespace roundel {
@@ -209,6 +209,10 @@ void add_arena_options(CLI::App& command, SimulateOptions& options) {
                    "Robots pass each other within millimetres");
   command.add_option("--length", arena.length_m, "Of the arena, metres")->capture_default_str();
   command.add_option("--breadth", arena.width_m, "Of the arena, metres")->capture_default_str();
+  command.add_option("--min-height", arena.min_height_m, "Of the robots' markers, metres")
+      ->capture_default_str();
+  command.add_option("--max-height", arena.max_height_m, "Of the robots' markers, metres")
+      ->capture_default_str();
   command.add_option("--speed", arena.max_speed, "Of the robots, at most, m/s")
       ->capture_default_str();
 }

@@ -30,7 +30,8 @@ FrameEncoder::FrameEncoder(std::string channel, const std::string& camera, int m
 }
 
 std::span<const Bytes> FrameEncoder::encode(const FrameInformation& information,
-                                            std::span<const Marker> markers) {
+                                            std::span<const Marker> markers,
+                                            std::span<const ArenaPose> arena) {
   const std::size_t most_parts = std::numeric_limits<std::int16_t>::max();
   markers = markers.first(std::min(markers.size(), most_parts * markers_per_part_));
   const std::size_t parts =
@@ -51,9 +52,10 @@ std::span<const Bytes> FrameEncoder::encode(const FrameInformation& information,
     message_.part = static_cast<std::int16_t>(part);
     message_.first_marker = static_cast<std::int32_t>(first);
     message_.num_markers = static_cast<std::int32_t>(count);
-    std::transform(markers.begin() + static_cast<std::ptrdiff_t>(first),
-                   markers.begin() + static_cast<std::ptrdiff_t>(first + count),
-                   message_.markers.begin(), [](const Marker& m) { return to_message(m); });
+    for (std::size_t i = 0; i < count; ++i) {
+      message_.markers[i] =
+          to_message(markers[first + i], arena.empty() ? ArenaPose() : arena[first + i]);
+    }
     std::uint8_t* const start = buffer_.data() + part * largest;
     const int size = message_.encode(start, 0, static_cast<int>(largest));
     parts_.emplace_back(start, static_cast<std::size_t>(size));

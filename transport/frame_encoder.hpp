@@ -26,9 +26,11 @@ class FrameEncoder {
   const std::string& channel() const { return channel_; }
   int markers_per_part() const { return static_cast<int>(markers_per_part_); }
 
-  // The frame's parts in order, at least one. They hold until the next call.
+  // The frame's parts in order, at least one. They hold until the next call. `arena` has one entry
+  // a marker, or none at all.
   std::span<const Bytes> encode(const FrameInformation& information,
-                                std::span<const Marker> markers);
+                                std::span<const Marker> markers,
+                                std::span<const ArenaPose> arena = {});
 
  private:
   std::string channel_;

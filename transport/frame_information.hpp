@@ -19,7 +19,8 @@ enum class StampSource : std::int8_t {
 enum class ClockState : std::int8_t { kUnknown = 0, kSynchronised = 1, kFreeRunning = 2 };
 enum class CameraState : std::int8_t { kStarting = 0, kStreaming = 1, kLost = 2, kEnded = 3 };
 enum class CalibrationState : std::int8_t { kNone = 0, kValid = 1, kOtherResolution = 2 };
-enum class ArenaState : std::int8_t { kNone = 0, kValid = 1 };
+enum class ArenaState : std::int8_t { kNone = 0, kValid = 1, kOtherCamera = 2, kMoved = 3 };
+enum class ArenaModeCode : std::int8_t { kNone = 0, k2D = 2, k3D = 3 };
 
 struct FrameInformation {
   std::int64_t session = 0;
@@ -34,6 +35,7 @@ struct FrameInformation {
   CameraState camera = CameraState::kStarting;
   CalibrationState calibration = CalibrationState::kNone;
   ArenaState arena = ArenaState::kNone;
+  ArenaModeCode arena_mode = ArenaModeCode::kNone;
   bool simulated = false;
 };
 

@@ -24,6 +24,10 @@ static_assert(code(CameraState::kEnded) == header_t::CAMERA_ENDED);
 static_assert(code(CalibrationState::kValid) == header_t::CALIBRATION_VALID);
 static_assert(code(CalibrationState::kOtherResolution) == header_t::CALIBRATION_OTHER_RESOLUTION);
 static_assert(code(ArenaState::kValid) == header_t::ARENA_VALID);
+static_assert(code(ArenaState::kOtherCamera) == header_t::ARENA_OTHER_CAMERA);
+static_assert(code(ArenaState::kMoved) == header_t::ARENA_MOVED);
+static_assert(code(ArenaModeCode::k2D) == header_t::ARENA_MODE_2D);
+static_assert(code(ArenaModeCode::k3D) == header_t::ARENA_MODE_3D);
 
 std::int16_t pixels(int side) {
   return static_cast<std::int16_t>(
@@ -39,6 +43,17 @@ void write(const Eigen::Quaterniond& q, float (&out)[4]) {
   out[1] = static_cast<float>(q.x());
   out[2] = static_cast<float>(q.y());
   out[3] = static_cast<float>(q.z());
+}
+
+void write(const ArenaPose& arena, marker_t& message) {
+  if (!arena.valid) return;
+  message.has_arena = 1;
+  message.arena_x = static_cast<float>(arena.position.x());
+  message.arena_y = static_cast<float>(arena.position.y());
+  message.arena_z = static_cast<float>(arena.position.z());
+  message.arena_heading = static_cast<float>(arena.heading);
+  write(arena.sigma_position, message.arena_sigma);
+  message.arena_sigma_heading = static_cast<float>(arena.sigma_heading);
 }
 
 Eigen::Vector3d vector(const float (&in)[3]) {
@@ -68,11 +83,12 @@ header_t to_message(const FrameInformation& information) {
   header.camera_state = code(information.camera);
   header.calibration_state = code(information.calibration);
   header.arena_state = code(information.arena);
+  header.arena_mode = code(information.arena_mode);
   header.simulated = information.simulated ? 1 : 0;
   return header;
 }
 
-marker_t to_message(const Marker& marker) {
+marker_t to_message(const Marker& marker, const ArenaPose& arena) {
   marker_t message{};
   message.id = marker.id;
   message.id_probability = static_cast<float>(marker.id_probability);
@@ -85,6 +101,7 @@ marker_t to_message(const Marker& marker) {
   message.ellipse_b = static_cast<float>(marker.ellipse.b);
   message.ellipse_angle = static_cast<float>(marker.ellipse.angle);
   if (!marker.has_pose) return message;
+  write(arena, message);
   message.has_pose = 1;
   write(marker.pose.position, message.position);
   write(marker.pose.orientation, message.orientation);
@@ -118,6 +135,17 @@ Marker from_message(const marker_t& message) {
   marker.alternative = {vector(message.alternative_position),
                         quaternion(message.alternative_orientation)};
   return marker;
+}
+
+ArenaPose arena_from_message(const marker_t& message) {
+  ArenaPose arena;
+  if (message.has_arena == 0) return arena;
+  arena.valid = true;
+  arena.position = {message.arena_x, message.arena_y, message.arena_z};
+  arena.heading = message.arena_heading;
+  arena.sigma_position = vector(message.arena_sigma);
+  arena.sigma_heading = message.arena_sigma_heading;
+  return arena;
 }
 
 }  // namespace roundel

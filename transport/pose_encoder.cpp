@@ -50,10 +50,11 @@ const char* PoseEncoder::channel(const Marker& marker) {
   return channel_.data();
 }
 
-Bytes PoseEncoder::encode(const FrameInformation& information, const Marker& marker) {
+Bytes PoseEncoder::encode(const FrameInformation& information, const Marker& marker,
+                          const ArenaPose& arena) {
   pose_t message{};
   message.header = to_message(information);
-  message.marker = to_message(marker);
+  message.marker = to_message(marker, arena);
   const int size = message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
   return {buffer_.data(), static_cast<std::size_t>(size)};
 }

@@ -22,7 +22,8 @@ class PoseEncoder {
 
   // "<prefix>_POSE_<id>" and the message. They hold until the next call.
   const char* channel(const Marker& marker);
-  Bytes encode(const FrameInformation& information, const Marker& marker);
+  Bytes encode(const FrameInformation& information, const Marker& marker,
+               const ArenaPose& arena = {});
 
  private:
   std::string prefix_;

@@ -9,15 +9,19 @@ Publisher::Publisher(LcmLink link, const PublisherParameters& parameters)
   if (parameters.per_marker) poses_.emplace(parameters.channel);
 }
 
-TimeStamp Publisher::publish(FrameInformation information, std::span<const Marker> markers) {
+TimeStamp Publisher::publish(FrameInformation information, std::span<const Marker> markers,
+                             std::span<const ArenaPose> arena) {
   information.published = now();
   sending_ = true;
-  for (const Bytes part : frames_.encode(information, markers)) {
+  for (const Bytes part : frames_.encode(information, markers, arena)) {
     sending_ = send(frames_.channel().c_str(), part) && sending_;
   }
   if (poses_) {
     for (const Marker* marker : poses_->select(markers)) {
-      sending_ = send(poses_->channel(*marker), poses_->encode(information, *marker)) && sending_;
+      const ArenaPose place =
+          arena.empty() ? ArenaPose() : arena[static_cast<std::size_t>(marker - markers.data())];
+      sending_ =
+          send(poses_->channel(*marker), poses_->encode(information, *marker, place)) && sending_;
     }
   }
   if (!sending_) ++unsent_frames_;

@@ -28,7 +28,9 @@ class Publisher {
 
   // Sends all parts of a frame, then the single poses. Sets the publish time in both clocks and
   // returns it. Every frame goes out, also without markers.
-  TimeStamp publish(FrameInformation information, std::span<const Marker> markers);
+  // `arena` has one entry a marker, or none at all.
+  TimeStamp publish(FrameInformation information, std::span<const Marker> markers,
+                    std::span<const ArenaPose> arena = {});
   void publish(const status_t& status);
 
   // Frames that could not be given to the network as a whole (its interface is down, for example).

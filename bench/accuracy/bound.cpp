@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "bench/accuracy/composer.hpp"
+#include "bench/common/composer.hpp"
 
 namespace roundel::bench {
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRounding = 1.0 / 12;   // variance of rounding to whole grey levels
 constexpr double kStepPx = 0.05;         // of the outline, for derivatives
-constexpr double kTiltStep = 0.005;      // radians
+constexpr double kMaxTiltStep = 0.005;   // radians
 constexpr double kBlurStep = 0.02;       // pixels
 constexpr double kLeastChange = 0.1;     // of the whole picture, grey levels, by one step
 constexpr double kMinCondition = 1e-10;  // of the information: less is nothing but rounding
@@ -66,9 +66,16 @@ class Differentiator {
   PixelRange box_;
 };
 
-Pose moved(Pose pose, int axis, double step) {
+// Two directions across the line of sight and, last, along it. Depth must not be taken along the
+// camera's axis: off the axis that moves the picture sideways by pixels for a step that changes its
+// size by hundredths, and the derivative would be none.
+Eigen::Matrix3d axes_of_sight(const Eigen::Vector3d& position) {
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), position).toRotationMatrix();
+}
+
+Pose moved(Pose pose, const Eigen::Matrix3d& axes, int axis, double step) {
   if (axis < 3) {
-    pose.position[axis] += step;
+    pose.position += step * axes.col(axis);
   } else {
     pose.orientation = pose.orientation * Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(axis - 3));
   }
@@ -87,11 +94,13 @@ std::optional<PoseCovariance> cramer_rao_bound(const Experiment& experiment, con
 
   std::vector<Eigen::VectorXd> columns;
   const int axes = has_yaw ? 6 : 5;
+  const Eigen::Matrix3d sight = axes_of_sight(marker.pose.position);
+  const double tilt_step = std::min(kMaxTiltStep, 2 * kStepPx / radius_px);
   const double steps[6] = {kStepPx * pixel_m, kStepPx * pixel_m, kStepPx * distance / radius_px,
-                           kTiltStep,         kTiltStep,         kStepPx / radius_px};
+                           tilt_step,         tilt_step,         kStepPx / radius_px};
   for (int axis = 0; axis < axes; ++axis) {
-    columns.push_back(picture.by_pose(moved(marker.pose, axis, steps[axis]),
-                                      moved(marker.pose, axis, -steps[axis]), steps[axis]));
+    columns.push_back(picture.by_pose(moved(marker.pose, sight, axis, steps[axis]),
+                                      moved(marker.pose, sight, axis, -steps[axis]), steps[axis]));
     // A plain ring looks the same whichever way it is turned; what is left is rounding.
     if (columns.back().norm() * steps[axis] < kLeastChange) return std::nullopt;
   }
@@ -122,7 +131,9 @@ std::optional<PoseCovariance> cramer_rao_bound(const Experiment& experiment, con
   if (!covariance.allFinite()) return std::nullopt;
   PoseCovariance result = PoseCovariance::Zero();
   result.topLeftCorner(axes, axes) = covariance.topLeftCorner(axes, axes);
-  return result;
+  PoseCovariance to_camera = PoseCovariance::Identity();
+  to_camera.topLeftCorner<3, 3>() = sight;
+  return to_camera * result * to_camera.transpose();
 }
 
 }  // namespace roundel::bench

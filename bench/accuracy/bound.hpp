@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "bench/accuracy/print.hpp"
+#include "bench/common/print.hpp"
 #include "core/covariance.hpp"
 
 namespace roundel::bench {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/accuracy/placement.hpp"
+#include "bench/common/placement.hpp"
 
 namespace roundel::bench {
 
@@ -61,6 +61,7 @@ void judge(const Experiment& experiment, int view, const System& system,
     if (distance > reach || match.sighting != nullptr) {
       ++verdicts.extra;
       if (sighting.number >= 0) ++verdicts.extra_ids;
+      if (sighting.number >= 0 && sighting.id_probability >= kSure) ++verdicts.extra_sure_ids;
     }
     if (distance > reach) continue;
     if (match.sighting == nullptr || distance < match.distance) match = {&sighting, distance};
@@ -75,6 +76,7 @@ void judge(const Experiment& experiment, int view, const System& system,
     record.short_side_px = short_side_px(experiment.camera, record.truth, experiment.diameter_m);
     if (const Sighting* sighting = matches[i].sighting) {
       record.read = sighting->number;
+      record.id_probability = sighting->id_probability;
       record.outcome = outcome_of(*sighting, record.number, system);
       if (record.outcome == Outcome::kFound) measure(*sighting, record);
     }

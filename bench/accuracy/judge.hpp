@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "bench/accuracy/experiment.hpp"
-#include "bench/accuracy/system.hpp"
+#include "bench/common/experiment.hpp"
+#include "bench/common/system.hpp"
 
 namespace roundel::bench {
 
@@ -17,11 +17,14 @@ enum class Outcome {
 
 inline constexpr double kFlip = 0.2;  // radians: a normal further off is the wrong one of the two
 
+inline constexpr double kSure = 0.99;  // probability of an id from which on it has to be right
+
 // How one judged marker of one view was seen by one system.
 struct Record {
   int view = 0, number = 0;
   Outcome outcome = Outcome::kMissed;
   int read = -1;  // the number read
+  double id_probability = 0;
   Pose truth;
   double incidence = 0;      // radians
   double short_side_px = 0;  // of the outer outline
@@ -45,8 +48,9 @@ struct Record {
 
 struct Verdicts {
   std::vector<Record> records;
-  int extra = 0;      // sightings where there is no marker, or the second of one marker
-  int extra_ids = 0;  // of them those with an id
+  int extra = 0;           // sightings where there is no marker, or the second of one marker
+  int extra_ids = 0;       // of them those with an id
+  int extra_sure_ids = 0;  // of them those that are sure of it (kSure)
 };
 
 // Holds what a system saw in a view against the truth. A sighting belongs to the marker whose

@@ -11,24 +11,30 @@
 #include <iterator>
 #include <thread>
 
-#include "bench/accuracy/contender.hpp"
-#include "bench/accuracy/experiments.hpp"
+#include "bench/accuracy/false_positives.hpp"
+#include "bench/accuracy/paper_experiments.hpp"
 #include "bench/accuracy/rank_tests.hpp"
+#include "bench/accuracy/reliability.hpp"
 #include "bench/accuracy/report.hpp"
+#include "bench/accuracy/run.hpp"
+#include "bench/accuracy/targets.hpp"
 
 namespace roundel::bench {
 namespace {
 
 struct Options {
-  std::string out, worst_file;
+  std::string out, worst_file, false_folder;
   std::vector<std::string> only, sets;
-  bool quick = false, with_sweeps = false, no_sets = false;
+  bool quick = false, with_sweeps = false, with_reliability = false, with_distractors = false;
+  bool no_sets = false;
   std::size_t worst_count = 20;
   int jobs = 1;
 };
 
 constexpr int kQuickThinning = 10;
 constexpr int kSweepPoses = 200;
+constexpr int kReliabilityViews = 80'000;
+constexpr int kDistractors = 1500;                  // pictures of a kind
 constexpr int kSetBounds = 300, kSweepBounds = 50;  // views whose bound is worked out
 
 template <typename Item>
@@ -99,7 +105,8 @@ void run_sets(const Options& options, const std::vector<Contender>& contenders) 
   auto csv = open(folder / "accuracy.csv");
   write_summary_csv(csv, summaries, {});
   auto markdown = open(folder / "accuracy.md");
-  write_markdown(markdown, experiments, summaries);
+  write_markdown(markdown, experiments, summaries, options.quick);
+  write_targets(markdown, summaries);
   auto rank_csv = open(folder / "rank_tests.csv");
   write_rank_tests(rank_csv, markdown, experiments, results);
 }
@@ -123,12 +130,36 @@ void run_sweeps(const Options& options, const std::vector<Contender>& contenders
   write_summary_csv(csv, summarise_all(results), point_of_result);
 }
 
+void run_reliability(const Options& options) {
+  const int views = kReliabilityViews / (options.quick ? kQuickThinning : 1);
+  if (options.out.empty()) {
+    write_reliability(std::cout, std::cout, views, options.jobs);
+    return;
+  }
+  const std::filesystem::path folder = options.out;
+  auto csv = open(folder / "reliability.csv");
+  auto markdown = open(folder / "reliability.md");
+  write_reliability(csv, markdown, views, options.jobs);
+}
+
+void run_distractors(const Options& options) {
+  const int pictures = kDistractors / (options.quick ? kQuickThinning : 1);
+  if (options.out.empty()) {
+    write_false_positives(std::cout, pictures, options.false_folder);
+    return;
+  }
+  auto markdown = open(std::filesystem::path(options.out) / "false_markers.md");
+  write_false_positives(markdown, pictures, options.false_folder);
+}
+
 void report(const Options& options) {
   std::vector<Contender> contenders = all_contenders();
   keep(contenders, options.only, "contender");
   if (!options.out.empty()) std::filesystem::create_directories(options.out);
   if (!options.no_sets) run_sets(options, contenders);
   if (options.with_sweeps) run_sweeps(options, contenders);
+  if (options.with_reliability) run_reliability(options);
+  if (options.with_distractors) run_distractors(options);
 }
 
 }  // namespace
@@ -144,6 +175,12 @@ int main(int argc, char** argv) {
   app.add_flag("--quick", options.quick, "a tenth of the poses");
   app.add_flag("--sweeps", options.with_sweeps,
                "vary tilt, distance, noise, blur, gamma and size, too");
+  app.add_flag("--reliability", options.with_reliability,
+               "hold the probabilities of ids against how often they are right, too");
+  app.add_flag("--distractors", options.with_distractors,
+               "look for markers in pictures without any, too");
+  app.add_option("--false-markers", options.false_folder,
+                 "existing folder for some pictures in which one was found, as PGM");
   app.add_flag("--no-sets", options.no_sets, "leave the experiments out");
   app.add_option("--worst", options.worst_file, "CSV file for the worst cases of each set");
   app.add_option("--worst-count", options.worst_count, "how many of each kind (default 20)");

@@ -2,8 +2,8 @@
 #include <numbers>
 #include <utility>
 
-#include "bench/accuracy/experiments.hpp"
-#include "bench/accuracy/placement.hpp"
+#include "bench/accuracy/paper_experiments.hpp"
+#include "bench/common/placement.hpp"
 #include "simulator/random.hpp"
 
 namespace roundel::bench {

@@ -1,6 +1,8 @@
+#include "bench/accuracy/paper_experiments.hpp"
+
 #include <algorithm>
 
-#include "bench/accuracy/experiments.hpp"
+#include "bench/common/arena.hpp"
 
 namespace roundel::bench {
 
@@ -20,6 +22,8 @@ std::vector<Experiment> paper_experiments(int thinning) {
   all.push_back(manipulator("manipulator-3m-noise", 3, 10, stride));
   all.push_back(arena("arena-gamma", "arena, 30 markers, sRGB",
                       {.robots = 30, .frames = thin(100), .srgb = true}));
+  all.push_back(arena("arena-gamma-known", "arena, 30 markers, sRGB, curve known",
+                      {.robots = 30, .frames = thin(100), .srgb = true, .response_known = true}));
   all.push_back(arena("arena-motion", "arena, 30 markers, 20 ms at 0.3 m/s",
                       {.robots = 30, .frames = thin(100), .exposure = 0.02, .speed = 0.3}));
   return all;

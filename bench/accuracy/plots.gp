@@ -88,3 +88,21 @@ do for [m = 1:2] {
     using 0:metric[m]:xticlabel('set') with points ps 1.1 lw 1.5 pt point(i) lc rgb colour(i) \
     title word(systems, i) noenhanced
 }
+
+# Ids: how often they are right, by their probability. A bin's area is the number of its readings.
+reliability = folder . '/reliability.csv'
+set terminal svg size 520,480 background rgb 'white' font 'Helvetica,11'
+set output folder . '/reliability.svg'
+reset
+set datafile separator ','
+set datafile columnheaders
+set grid lc rgb '#dddddd'
+set title 'share of right ids by their stated probability'
+set xlabel 'id_probability'
+set ylabel 'right'
+set xrange [0:1.02]
+set yrange [0:1.02]
+unset key
+plot x with lines dt 2 lc rgb 'black', \
+  reliability using 'mean_probability':'share_right':(0.3 * log10(column('count') + 1)) \
+    with linespoints lw 1.5 pt 7 ps variable lc rgb '#0060b0'

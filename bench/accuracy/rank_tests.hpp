@@ -3,7 +3,7 @@
 #include <iosfwd>
 #include <vector>
 
-#include "bench/accuracy/contender.hpp"
+#include "bench/accuracy/run.hpp"
 
 namespace roundel::bench {
 

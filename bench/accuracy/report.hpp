@@ -16,8 +16,9 @@ void write_summary_csv(std::ostream& out, const std::vector<Summary>& summaries,
                        const std::vector<const SweepPoint*>& sweep_points);
 
 // Tables for readers, one an experiment.
+// `quick`: with few poses, which the table then says.
 void write_markdown(std::ostream& out, const std::vector<Experiment>& experiments,
-                    const std::vector<Summary>& summaries);
+                    const std::vector<Summary>& summaries, bool quick);
 
 // The worst of each result: markers that were not found, then the largest position and normal
 // errors, `count` of each.

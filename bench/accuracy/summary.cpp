@@ -1,36 +1,48 @@
 #include "bench/accuracy/summary.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <numbers>
 
 namespace roundel::bench {
 
 namespace {
 
-double squared_norm_in_sigmas(const Eigen::Vector3d& error, const Eigen::Vector3d& sigma) {
-  return (error.array() / sigma.array()).square().mean();
-}
+constexpr double kSteep = 75 * std::numbers::pi / 180;
 
-double mean_of(const std::vector<double>& values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
+// Of records with sigmas.
+class Honesty {
+ public:
+  void add(const Record& record) {
+    for (int axis = 0; axis < 6; ++axis) {
+      const double error = axis < 3 ? record.position_error[axis] : record.rotation_error[axis - 3];
+      const double sigma = axis < 3 ? record.sigma_position[axis] : record.sigma_rotation[axis - 3];
+      const double square = error * error / (sigma * sigma);
+      squares_[static_cast<std::size_t>(axis)] += square;
+      if (square <= 1) ++within_;
+    }
+    size_ += record.sigma_position.norm();
+    ++count_;
+  }
+
+  void write(Summary& s) const {
+    s.has_sigma = count_ > 0;
+    if (count_ == 0) return;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      s.axis_honesty[axis] = squares_[axis] / count_;
+      s.sum_of_squares += s.axis_honesty[axis];
+      (axis < 3 ? s.position_honesty : s.rotation_honesty) += s.axis_honesty[axis] / 3;
+    }
+    s.within_sigma = static_cast<double>(within_) / (6.0 * count_);
+    s.mean_sigma_mm = 1000 * size_ / count_;
+  }
+
+ private:
+  std::array<double, 6> squares_{};
+  double size_ = 0;
+  int count_ = 0, within_ = 0;
+};
 
 }  // namespace
-
-Distribution distribution_of(std::vector<double> values) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (values.empty()) return {kNone, kNone, kNone, kNone};
-  const double mean = mean_of(values);
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(
-        std::lround(share * static_cast<double>(values.size() - 1)))];
-  };
-  return {mean, at(0.5), at(0.99), values.back()};
-}
 
 Summary summarise(const Result& result) {
   Summary s;
@@ -39,13 +51,22 @@ Summary summarise(const Result& result) {
   s.has_yaw = result.has_yaw;
   s.extra = result.verdicts.extra;
   s.extra_ids = result.verdicts.extra_ids;
-  std::vector<double> position, phi, normal, position_honesty, rotation_honesty, sigma;
+  s.sure_ids = s.sure_wrong_ids = result.verdicts.extra_sure_ids;
+  Honesty honesty;
+  std::vector<double> position, phi, normal;
   std::vector<double> squared_error, squared_bound, bound_phi;
   for (const Record& record : result.verdicts.records) {
     ++s.judged;
+    const bool steep = record.incidence > kSteep;
+    if (!steep) ++s.judged_to_75;
+    if (record.read >= 0 && record.id_probability >= kSure) {
+      ++s.sure_ids;
+      if (record.outcome == Outcome::kWrongId) ++s.sure_wrong_ids;
+    }
     switch (record.outcome) {
       case Outcome::kFound:
         ++s.found;
+        if (!steep) ++s.found_to_75;
         break;
       case Outcome::kUnread:
         ++s.unread;
@@ -69,20 +90,12 @@ Summary summarise(const Result& result) {
       squared_bound.push_back(1e6 * record.bound_position * record.bound_position);
       bound_phi.push_back(0.5 * record.bound_rotation);
     }
-    if (!record.has_sigma) continue;
-    s.has_sigma = true;
-    position_honesty.push_back(
-        squared_norm_in_sigmas(record.position_error, record.sigma_position));
-    rotation_honesty.push_back(
-        squared_norm_in_sigmas(record.rotation_error, record.sigma_rotation));
-    sigma.push_back(1000 * record.sigma_position.norm());
+    if (record.has_sigma) honesty.add(record);
   }
   s.position_mm = distribution_of(position);
   s.phi = distribution_of(phi);
   s.normal = distribution_of(normal);
-  s.position_honesty = mean_of(position_honesty);
-  s.rotation_honesty = mean_of(rotation_honesty);
-  s.mean_sigma_mm = mean_of(sigma);
+  honesty.write(s);
   s.position_rms_mm = std::sqrt(mean_of(squared_error));
   s.bound_rms_mm = std::sqrt(mean_of(squared_bound));
   s.efficiency = mean_of(squared_bound) / mean_of(squared_error);

@@ -1,18 +1,13 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "bench/accuracy/contender.hpp"
+#include "bench/accuracy/run.hpp"
+#include "bench/common/distribution.hpp"
 
 namespace roundel::bench {
-
-struct Distribution {
-  double mean = 0, median = 0, p99 = 0, worst = 0;
-};
-
-// NaN for no values.
-Distribution distribution_of(std::vector<double> values);
 
 // What one system did in one experiment. Shares are of the judged markers, flips of the found ones.
 struct Summary {
@@ -20,11 +15,16 @@ struct Summary {
   bool has_yaw = true, has_sigma = false;
   int judged = 0, found = 0, unread = 0, wrong_ids = 0, missed = 0, flips = 0;
   int extra = 0, extra_ids = 0;           // see Verdicts
+  int judged_to_75 = 0, found_to_75 = 0;  // seen at most 75 degrees off their normal
+  int sure_ids = 0, sure_wrong_ids = 0;   // readings given kSure or more; extra ones count as wrong
   Distribution position_mm, phi, normal;  // of the found markers; radians
 
-  // Honesty of the published sigmas, flips left out: the mean over found markers and axes of
-  // (error / sigma)^2, 1 when honest; and the sigmas' own size.
-  double position_honesty = 0, rotation_honesty = 0;
+  // Honesty of the published sigmas, flips left out: the means over found markers of
+  // (error / sigma)^2 by axis (position x, y, z, rotation x, y, z of the camera), 1 when honest;
+  // the means of three of them, the sum of all six, and the share of errors within one sigma; and
+  // the sigmas' own size.
+  std::array<double, 6> axis_honesty{};
+  double position_honesty = 0, rotation_honesty = 0, sum_of_squares = 0, within_sigma = 0;
   double mean_sigma_mm = 0;  // of the position: square root of the axes' summed variances
 
   // Against the Cramer-Rao bound, over the views for which it is known, flips left out: root mean
@@ -34,6 +34,9 @@ struct Summary {
   double bound_phi_median = 0;
 
   double found_share() const { return judged > 0 ? static_cast<double>(found) / judged : 0; }
+  double found_share_to_75() const {
+    return judged_to_75 > 0 ? static_cast<double>(found_to_75) / judged_to_75 : 0;
+  }
   double flip_share() const { return found > 0 ? static_cast<double>(flips) / found : 0; }
 };
 

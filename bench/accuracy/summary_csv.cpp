@@ -15,6 +15,8 @@ void write_summary_csv(std::ostream& out, const std::vector<Summary>& summaries,
       "phi_mean,phi_median,phi_p99,phi_worst,"
       "normal_mean,normal_median,normal_p99,normal_worst,"
       "position_z2,rotation_z2,sigma_mm,"
+      "z2_x,z2_y,z2_z,z2_rx,z2_ry,z2_rz,within_sigma_percent,sure_ids,sure_wrong_ids,"
+      "found_to_75_percent,"
       "position_rms_mm,bound_rms_mm,efficiency,bound_phi_median\n",
       sweeping ? "sweep,value" : "set");
   for (std::size_t i = 0; i < summaries.size(); ++i) {
@@ -38,6 +40,11 @@ void write_summary_csv(std::ostream& out, const std::vector<Summary>& summaries,
     for (const double value : {s.position_honesty, s.rotation_honesty, s.mean_sigma_mm}) {
       fmt::print(out, ",{}", sigma_figure(s, value, "{:.4g}", ""));
     }
+    for (const double value : s.axis_honesty) {
+      fmt::print(out, ",{}", sigma_figure(s, value, "{:.4g}", ""));
+    }
+    fmt::print(out, ",{},{},{},{:.3f}", sigma_figure(s, 100 * s.within_sigma, "{:.1f}", ""),
+               s.sure_ids, s.sure_wrong_ids, 100 * s.found_share_to_75());
     for (const double value : {s.position_rms_mm, s.bound_rms_mm, s.efficiency}) {
       fmt::print(out, ",{}", figure(value, "{:.4g}", ""));
     }

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "bench/accuracy/placement.hpp"
+#include "bench/common/placement.hpp"
 #include "simulator/random.hpp"
 
 namespace roundel::bench {

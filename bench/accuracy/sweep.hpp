@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/accuracy/experiment.hpp"
+#include "bench/common/experiment.hpp"
 
 namespace roundel::bench {
 

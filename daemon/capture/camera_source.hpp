@@ -44,6 +44,7 @@ class CameraSource final : public FrameSource {
   int height() const override { return camera_ ? camera_->reader.height() : 0; }
   bool simulated() const override { return false; }
   std::string description() const override;
+  // By the serial number, or where it has none by the place where it is plugged in.
   std::string identity() const override;
   std::string crop() const override;
   std::shared_ptr<CameraControls> controls() const override { return controls_; }

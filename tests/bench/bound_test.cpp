@@ -41,6 +41,31 @@ TEST_CASE("sideways the bound is what the outline's length, contrast and blur gi
   CHECK(bound > 0.5 * expected);
 }
 
+// A step in depth along the camera's axis would move such a marker sideways by more than its edges
+// are wide.
+TEST_CASE("far off the camera's axis distance is known about as well as in the middle") {
+  Experiment experiment = one_marker(3);
+  experiment.camera.width = 960;
+  experiment.camera.cx = 479.5;
+  PlacedMarker marker = experiment.views.front().markers.front();
+  marker.pose.position = {0, 0, 3};
+  marker.pose.orientation = tilted(0.4, 1, 0.3);
+  const auto distance_sigma = [&](double angle) {
+    const Eigen::Quaterniond aside(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()));
+    PlacedMarker turned = marker;
+    turned.pose = {aside * marker.pose.position, aside * marker.pose.orientation};
+    const PoseCovariance bound =
+        cramer_rao_bound(experiment, whycode_print(experiment), turned, true).value();
+    const Eigen::Vector3d sight = turned.pose.position.normalized();
+    return std::sqrt(sight.dot(bound.topLeftCorner<3, 3>() * sight));
+  };
+  // Aside, a marker's image grows by 1/cos^2 of the angle outward, by 1/cos across; of a disc of R
+  // pixels, 2 pi R pixels of outline tell R, and the distance as sharply as R.
+  const double growth = std::pow(std::cos(0.5), -1.5);
+  CHECK(distance_sigma(0.5) ==
+        doctest::Approx(distance_sigma(0) * std::pow(growth, -1.5)).epsilon(0.05));
+}
+
 TEST_CASE("the floor around the plate tells nothing") {
   Experiment experiment = one_marker(3);
   const Print print = whycode_print(experiment);

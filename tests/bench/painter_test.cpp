@@ -1,4 +1,4 @@
-#include "bench/accuracy/painter.hpp"
+#include "bench/common/painter.hpp"
 
 #include <doctest/doctest.h>
 

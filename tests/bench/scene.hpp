@@ -1,7 +1,7 @@
 #pragma once
 
-#include "bench/accuracy/experiment.hpp"
-#include "bench/accuracy/placement.hpp"
+#include "bench/common/experiment.hpp"
+#include "bench/common/placement.hpp"
 
 namespace roundel::bench {
 

@@ -94,6 +94,13 @@ TEST_CASE("an OpenCV FileStorage camera file is read") {
   CHECK(file.camera.distortion.k3 == -0.012);
 }
 
+TEST_CASE("comments stand above the keys and do not disturb a reader") {
+  const std::vector<std::string> comments = {"made today: 15 views", "  fx 1452.25 ± 0.01 px"};
+  const std::string text = format_camera_file(golden_camera(), comments);
+  CHECK(text == "# made today: 15 views\n#   fx 1452.25 ± 0.01 px\n" + read_file(kGolden));
+  check_same(parse_camera_file(text, "camera.yaml").camera, golden_camera().camera);
+}
+
 TEST_CASE("four coefficients mean that the fifth is zero") {
   const std::string text =
       replaced(replaced(read_file(kGolden), "cols: 5", "cols: 4"), ", -0.012]", "]");

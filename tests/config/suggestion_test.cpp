@@ -24,6 +24,8 @@ TEST_CASE("a key that is like no other gets no suggestion") {
 }
 
 TEST_CASE("a section's keys are listed in the file's order") {
-  CHECK(keys_of_section("") == "source, simulator, files, camera, marker, detector, lcm");
-  CHECK(keys_of_section("marker") == "diameter, bits, hamming");
+  CHECK(keys_of_section("") ==
+        "source, simulator, files, camera, marker, arena, detector, lcm, control");
+  CHECK(keys_of_section("marker") ==
+        "diameter, bits, hamming, height, offset_x, offset_y, rotation, mounts");
 }

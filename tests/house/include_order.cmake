@@ -10,7 +10,7 @@ set(transport_may_use core)
 set(simulator_may_use core)
 set(daemon_may_use core calibration config transport simulator)
 set(tools_may_use core calibration config transport simulator daemon)
-set(bench_may_use core simulator)
+set(bench_may_use core simulator transport)
 
 set(faults "")
 set(checked 0)

@@ -10,18 +10,14 @@
 
 #include "core/tracker.hpp"
 #include "simulator/arena.hpp"
+#include "tests/slow_build.hpp"
 #include "tools/comparison_output.hpp"
 #include "tools/track_statistics.hpp"
 
 namespace roundel {
 namespace {
 
-// Sanitizers and builds without optimisation are many times slower.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
-constexpr bool kSlow = true;
-#else
-constexpr bool kSlow = false;
-#endif
+using test::kSlow;
 
 ArenaOptions arena_of(int robots) {
   ArenaOptions options;  // Full HD, four plain corner markers, a floor full of clutter

@@ -60,7 +60,7 @@ TEST_CASE("wrong usage ends with status 2 and one line") {
   check_refused("detect --bits eight a.png", 2, "--bits");
   check_refused("detect --diameter -1 a.png", 2, "--diameter");
   check_refused("detect --max-markers 0 a.png", 2, "--max-markers");
-  check_refused("detect --arena a.yaml a.png", 2, "--arena is not supported yet");
+  check_refused("detect --arena a.yaml a.png", 2, "--arena needs --camera");
   check_refused("markers --id 31 -o m.pdf", 2, "there is no id 31; this set has the ids 1 to 30");
   check_refused("markers --id 17 --hamming 2 -o m.pdf", 2, "the ids 1 to 16");
   check_refused("markers --id 1 --bits 17 -o m.pdf", 2, "a code of 17 bits does not exist");

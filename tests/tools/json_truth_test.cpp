@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "daemon/json_frame.hpp"
 #include "tests/error_of.hpp"
-#include "tools/json_frame.hpp"
 
 namespace roundel {
 namespace {

@@ -54,8 +54,8 @@ TEST_CASE("every datagram of a frame stays within the limit, whatever the limit 
   }
 }
 
-TEST_CASE("a default datagram holds eight markers") {
-  CHECK(FrameEncoder("ROUNDEL_FRAME", "camera", 1400).markers_per_part() == 8);
+TEST_CASE("a default datagram holds seven markers") {
+  CHECK(FrameEncoder("ROUNDEL_FRAME", "camera", 1400).markers_per_part() == 7);
 }
 
 TEST_CASE("LCM puts eight bytes, the channel and a zero in front of a message") {

@@ -34,6 +34,25 @@ TEST_CASE("a marker survives the way over the wire in all fields") {
   CHECK(received.alternative.orientation.coeffs() == sent.alternative.orientation.coeffs());
 }
 
+TEST_CASE("arena coordinates and their deviations survive the way over the wire") {
+  ArenaPose sent;
+  sent.valid = true;
+  sent.position = {1.25, 0.5, 0.125};
+  sent.heading = -0.75;
+  sent.sigma_position = {0.25, 0.5, 0.75};
+  sent.sigma_heading = 0.0625;
+  const ArenaPose received = arena_from_message(to_message(sample_marker(3), sent));
+  CHECK(received.valid);
+  CHECK(received.position == sent.position);
+  CHECK(received.heading == sent.heading);
+  CHECK(received.sigma_position == sent.sigma_position);
+  CHECK(received.sigma_heading == sent.sigma_heading);
+  CHECK_FALSE(arena_from_message(to_message(sample_marker(3))).valid);
+  Marker no_pose = sample_marker(3);
+  no_pose.has_pose = false;
+  CHECK_FALSE(arena_from_message(to_message(no_pose, sent)).valid);
+}
+
 TEST_CASE("orientation is sent in the order w, x, y, z") {
   Marker marker = sample_marker(0);
   marker.pose.orientation = Eigen::Quaterniond(0.5, 0.25, 0.125, 0.0625);

@@ -1,0 +1,83 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/observer.hpp"
+
+namespace roundel {
+
+namespace {
+
+// Half of the width of an edge's profile that is looked at, in blurs, and what the start may be
+// off.
+constexpr double kReachBlurs = 2.5, kReachSlack = 0.5;  // pixels
+constexpr double kMaxReach = 4.0;
+
+// More than noise makes of the blur's stretch.
+constexpr double kMotionStretch = 0.1;
+
+// The picture bears a followed pose out while its residuals stay as they were, about, and hardly a
+// pixel is disbelieved: a bit of another word would be one in twenty.
+constexpr double kMaxGrowth = 1.3, kMinTrust = 0.97;
+
+// The other pose that the same outline allows, seen from far: mirrored in the plane across the line
+// of sight. Good to a few percent of the radius over the distance, which does for an alternative.
+Pose mirrored(const Pose& pose) {
+  const Eigen::Vector3d sight = pose.position.normalized();
+  const Eigen::Matrix3d axes = pose.orientation.toRotationMatrix();
+  Eigen::Matrix3d other = axes - 2 * sight * (sight.transpose() * axes);
+  other.col(2) = other.col(0).cross(other.col(1));
+  return {pose.position, with_positive_w(Eigen::Quaterniond(other).normalized())};
+}
+
+}  // namespace
+
+std::optional<Observation> Observer::follow(const LumaView& frame, const Segment& segment,
+                                            const PoseHypothesis& last, const Ellipse& last_ellipse,
+                                            const Eigen::Vector3d& turn) {
+  const Ellipse& here = segment.ellipse;
+  const auto before = camera_->normalise({last_ellipse.u, last_ellipse.v});
+  const auto now = camera_->normalise({here.u, here.v});
+  if (!before || !now) return std::nullopt;
+  PhotometricState start = *last.state;
+  start.pose.position.head<2>() += start.pose.position.z() * (*now - *before);
+  if (const double angle = turn.norm(); angle > 0) {
+    start.pose.orientation =
+        Eigen::AngleAxisd(angle, turn / angle) * Eigen::Quaterniond(start.pose.orientation);
+  }
+  const double reach = std::min(kMaxReach, kReachBlurs * start.blur_px + kReachSlack);
+  if (!fit_.load(frame, *camera_, here, parameters_.diameter_m / 2, reach)) return std::nullopt;
+
+  // Some grey levels always: a start that is off shows as residuals at the edges.
+  constexpr double kStartDeviation = 0.02;  // share of the contrast
+  FitPlan plan;
+  // Motion blur changes with every turn and has to be fitted along.
+  const bool in_motion = std::hypot(start.stretch_u, start.stretch_d) > kMotionStretch;
+  plan.unknowns = in_motion ? kCodeUnknowns : kFollowedUnknowns;
+  plan.max_steps = 4;
+  plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * segment.levels.contrast();
+  EdgeLook look;
+  if (last.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
+  const auto fitted = fit_.fit(start, last.pattern, look, plan);
+  if (!fitted || fitted->trust < kMinTrust) return std::nullopt;
+  const double floor = kModelError * segment.levels.contrast();
+  if (fitted->mean_square > kMaxGrowth * (last.mean_square + floor * floor)) return std::nullopt;
+
+  Observation observation;
+  observation.segment = segment;
+  observation.coded = last.pattern.kind == Pattern::Kind::kCode;
+  observation.plausible = true;
+  observation.followed = true;
+  observation.pose_count = 2;
+  PoseHypothesis& found = observation.poses[0];
+  found.pose = fitted->state.pose;
+  found.covariance = fitted->covariance;
+  found.pattern = last.pattern;
+  found.state = fitted->state;
+  found.mean_square = fitted->mean_square;
+  observation.poses[1].pose = mirrored(found.pose);
+  observation.poses[1].covariance = found.covariance;
+  return observation;
+}
+
+}  // namespace roundel

@@ -1,0 +1,136 @@
+#include "daemon/control/control_center.hpp"
+
+#include <poll.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "daemon/control/state_json.hpp"
+#include "daemon/json_frame.hpp"
+#include "daemon/log.hpp"
+#include "transport/clock.hpp"
+
+namespace roundel {
+namespace {
+
+constexpr int kTickMs = 250;
+constexpr std::int64_t kOverduePeriodUs = 1'000'000;
+constexpr int kNiceness = 10;
+
+}  // namespace
+
+ControlCenter::ControlCenter()
+    : arena_(commands_), api_(view_, arena_, commands_), thread_([this] { run(); }) {}
+
+ControlCenter::~ControlCenter() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  // Whoever waits for the loop or for a picture would wait in vain.
+  commands_.drop_all();
+  view_.close();
+  news_.wake();
+  thread_.join();
+}
+
+void ControlCenter::offer_snapshot() {
+  frames_.publish();
+  news_.wake();
+}
+
+void ControlCenter::offer(const status_t& status) {
+  statuses_.back() = status;
+  statuses_.publish();
+  news_.wake();
+}
+
+void ControlCenter::serve(const ControlSettings& settings) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = settings;
+  }
+  news_.wake();
+}
+
+void ControlCenter::run() {
+  // In Linux this is the calling thread's; threads that it starts inherit it.
+  ::setpriority(PRIO_PROCESS, 0, kNiceness);
+  std::int64_t overdue_us = 0;
+  for (;;) {
+    pollfd descriptor = {news_.descriptor(), POLLIN, 0};
+    ::poll(&descriptor, 1, kTickMs);
+    news_.clear();
+    {
+      const std::lock_guard lock(mutex_);
+      if (ending_) break;
+    }
+    take_news();
+    const std::int64_t now_us = now().mono_us;
+    arena_.on_tick(now_us);
+    open_server();
+    if (server_ && now_us >= overdue_us) {
+      server_->end_overdue();
+      overdue_us = now_us + kOverduePeriodUs;
+    }
+  }
+  server_.reset();
+  socket_.reset();
+}
+
+void ControlCenter::take_news() {
+  if (const status_t* status = statuses_.take()) view_.show(*status);
+  const FrameSnapshot* const frame = frames_.take();
+  if (frame == nullptr) return;
+  auto shown = std::make_shared<FrameSnapshot>();
+  shown->information = frame->information;
+  shown->markers = frame->markers;
+  shown->arena = frame->arena;
+  shown->context = frame->context;
+  shown->has_picture = frame->has_picture;
+  // Slots keep the memory of old pictures.
+  if (frame->has_picture) shown->picture = frame->picture;
+  arena_.on_frame(*shown);
+  if (server_ && server_->has_event_streams()) {
+    auto text = std::make_shared<const std::string>(
+        "event: frame\ndata: " + json_line(markers_json(*shown)) + "\n");
+    const std::lock_guard lock(mutex_);
+    event_ = {++frames_seen_, std::move(text)};
+  }
+  view_.show(std::move(shown));
+  if (server_) server_->wake_event_streams();
+}
+
+HttpEvent ControlCenter::newest_event() {
+  const std::lock_guard lock(mutex_);
+  return event_;
+}
+
+void ControlCenter::open_server() {
+  std::optional<ControlSettings> wanted;
+  {
+    const std::lock_guard lock(mutex_);
+    wanted.swap(wanted_);
+  }
+  if (!wanted || (wanted->socket == served_.socket && wanted->group == served_.group)) return;
+  served_ = *wanted;
+  server_.reset();
+  socket_.reset();
+  if (served_.socket.empty()) return;
+  try {
+    socket_.emplace(served_.socket, served_.group);
+    if (!socket_->remark().empty()) {
+      log_warning("control.group: {}: {}", served_.socket, socket_->remark());
+    }
+    server_.emplace(
+        socket_->take_descriptor(),
+        [this](const HttpRequest& request) { return api_.handle(request); },
+        [this] { return newest_event(); }, HttpLimits{});
+  } catch (const std::runtime_error& error) {
+    socket_.reset();
+    log_warning("control.socket: {}; roundel status and the like can't reach this roundeld",
+                error.what());
+  }
+}
+
+}  // namespace roundel
