@@ -292,19 +292,6 @@ void CameraSource::note_frame() {
   told_in_vain_ = false;
 }
 
-std::string CameraSource::identity() const {
-  const CameraInformation* known = camera_ ? &camera_->information : before_ ? &*before_ : nullptr;
-  if (known == nullptr) return {};
-  return known->serial.empty() ? fmt::format("{} at {}", known->card, known->bus)
-                               : fmt::format("{}, serial {}", known->card, known->serial);
-}
-
-std::string CameraSource::crop() const {
-  const Crop& crop = parameters_.mode.crop;
-  if (crop.width == 0) return {};
-  return fmt::format("{}x{} from ({}, {})", crop.width, crop.height, crop.left, crop.top);
-}
-
 std::string CameraSource::description() const {
   if (!camera_) {
     return before_ ? fmt::format("{}, not there", describe(*before_)) : "a camera, not there yet";
@@ -330,7 +317,7 @@ std::string CameraSource::identity() const {
 std::string CameraSource::crop() const {
   const Crop& crop = parameters_.mode.crop;
   if (crop.empty()) return {};
-  return fmt::format("{}x{} at ({}, {})", crop.width, crop.height, crop.left, crop.top);
+  return fmt::format("{}x{} from ({}, {})", crop.width, crop.height, crop.left, crop.top);
 }
 
 std::string CameraSource::explanation_of_drops() const {
