@@ -292,13 +292,6 @@ void CameraSource::note_frame() {
   told_in_vain_ = false;
 }
 
-std::string CameraSource::identity() const {
-  const CameraInformation* known = camera_ ? &camera_->information : before_ ? &*before_ : nullptr;
-  if (known == nullptr) return {};
-  return known->serial.empty() ? fmt::format("{} at {}", known->card, known->bus)
-                               : fmt::format("{}, serial {}", known->card, known->serial);
-}
-
 std::string CameraSource::description() const {
   if (!camera_) {
     return before_ ? fmt::format("{}, not there", describe(*before_)) : "a camera, not there yet";
@@ -314,10 +307,17 @@ std::string CameraSource::description() const {
                      camera_->stream->cached() ? ", cached buffers" : "");
 }
 
+// As find_again() knows it. Nothing before it was there for the first time.
+std::string CameraSource::identity() const {
+  if (!before_) return {};
+  return before_->serial.empty() ? fmt::format("{} at {}", before_->card, before_->bus)
+                                 : fmt::format("{}, serial {}", before_->card, before_->serial);
+}
+
 std::string CameraSource::crop() const {
   const Crop& crop = parameters_.mode.crop;
   if (crop.empty()) return {};
-  return fmt::format("{}x{} at ({}, {})", crop.width, crop.height, crop.left, crop.top);
+  return fmt::format("{}x{} from ({}, {})", crop.width, crop.height, crop.left, crop.top);
 }
 
 std::string CameraSource::explanation_of_drops() const {

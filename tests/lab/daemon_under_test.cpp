@@ -19,8 +19,8 @@ std::vector<std::string> command(const TemporaryDirectory& folder, const CameraM
                                  std::vector<std::string> settings) {
   const std::string lens = folder.file("camera.yaml");
   write_camera_file(lens, {"lab", camera});
-  settings.insert(settings.end(),
-                  {"source=camera", std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
+  settings.insert(settings.end(), {"source=camera", "control.socket=",
+                                   std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
   std::vector<std::string> words = {ROUNDELD_BINARY};
   for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
   return words;
@@ -36,7 +36,8 @@ DaemonUnderTest::DaemonUnderTest(const Film& film, const std::vector<std::string
 bool DaemonUnderTest::receive(int timeout_ms, const std::function<bool()>& wanted) {
   const std::int64_t end_us = now().mono_us + std::int64_t{timeout_ms} * 1000;
   while (now().mono_us < end_us) {
-    const ReceivedFrame* const frame = subscriber_.next_frame(std::chrono::milliseconds(10));
+    // Shorter than any loss: the subscriber keeps only the last status.
+    const ReceivedFrame* const frame = subscriber_.next_frame(std::chrono::milliseconds(2));
     if (frame != nullptr) {
       Frame& mine = frames_.emplace_back();
       mine.header = frame->header;

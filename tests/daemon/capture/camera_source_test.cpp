@@ -360,7 +360,7 @@ TEST_CASE("a part of the picture is read in place") {
   CHECK(lease->frame().luma.data == camera.state().memory[0].data() + 20 * 64 + 10);
   CHECK(source.width() == 30);
   CHECK(source.height() == 16);
-  CHECK(source.crop() == "30x16 at (10, 20)");
+  CHECK(source.crop() == "30x16 from (10, 20)");
 }
 
 TEST_CASE("taking frames allocates nothing") {
