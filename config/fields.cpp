@@ -34,6 +34,10 @@ bool is_printable(FieldTarget value) {
   return true;
 }
 
+bool is_response(FieldTarget value) {
+  return ResponseCurve::named(*std::get<std::string*>(value)).has_value();
+}
+
 bool is_arena_mode(FieldTarget value) {
   const std::string& mode = *std::get<std::string*>(value);
   return mode == "2d" || mode == "3d";
@@ -74,6 +78,8 @@ constexpr std::array kFields = {
     Field{"camera.name", ROUNDEL_TARGET(camera.name), 1, 64, is_printable,
           "text of 1 to 64 printable characters"},
     Field{"camera.calibration", ROUNDEL_TARGET(camera.calibration), 0, 4096},
+    Field{"camera.response", ROUNDEL_TARGET(camera.response), 1, 20, is_response,
+          "linear, srgb, or a gamma from 0.2 to 5"},
     Field{"camera.device", ROUNDEL_TARGET(camera.device), 0, 4096, is_path_or_empty,
           "a path, as in /dev/video0 or /dev/v4l/by-id/..., or nothing"},
     Field{"camera.match_card", ROUNDEL_TARGET(camera.match_card), 0, 100},

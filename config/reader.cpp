@@ -172,6 +172,9 @@ class Reader {
                           "and camera.crop_height go together; accepted: both 0 (no crop), or both "
                           "more");
     }
+    if (const auto response = ResponseCurve::named(c.camera.response)) {
+      loaded_.values.detector.response = *response;
+    }
     return std::move(loaded_);
   }
 

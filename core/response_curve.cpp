@@ -1,10 +1,15 @@
 #include "core/response_curve.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 namespace roundel {
+
+namespace {
+constexpr double kMinGamma = 0.2, kMaxGamma = 5;
+}  // namespace
 
 void ResponseCurve::fill_slopes() {
   for (std::size_t k = 0; k < 256; ++k) {
@@ -29,7 +34,7 @@ ResponseCurve ResponseCurve::srgb() {
 }
 
 ResponseCurve ResponseCurve::power(double gamma) {
-  if (!(gamma >= 0.2 && gamma <= 5)) {
+  if (!(gamma >= kMinGamma && gamma <= kMaxGamma)) {
     throw std::invalid_argument("the response curve's gamma must be 0.2 to 5");
   }
   ResponseCurve curve;
@@ -38,6 +43,16 @@ ResponseCurve ResponseCurve::power(double gamma) {
   }
   curve.fill_slopes();
   return curve;
+}
+
+std::optional<ResponseCurve> ResponseCurve::named(std::string_view name) {
+  if (name == "linear") return linear();
+  if (name == "srgb") return srgb();
+  double gamma = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), gamma);
+  const bool whole = error == std::errc() && end == name.data() + name.size();
+  if (!whole || !(gamma >= kMinGamma && gamma <= kMaxGamma)) return std::nullopt;
+  return power(gamma);
 }
 
 double ResponseCurve::light(double grey) const {

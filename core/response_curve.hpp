@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 namespace roundel {
 
@@ -16,6 +18,9 @@ class ResponseCurve {
   static ResponseCurve srgb();
   // grey = 255 (light / 255)^(1 / gamma). Throws std::invalid_argument unless gamma is 0.2 to 5.
   static ResponseCurve power(double gamma);
+
+  // "linear", "srgb" or a gamma like "2.2". Nothing for anything else.
+  static std::optional<ResponseCurve> named(std::string_view name);
 
   // Light of a grey level, both 0 to 255.
   float light(std::uint8_t grey) const { return light_[grey]; }

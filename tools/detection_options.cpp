@@ -46,6 +46,22 @@ std::shared_ptr<DetectionOptions> add_detection_options(CLI::App& command,
       ->type_name("TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option_function<std::string>(
+          "--response",
+          [options](const std::string& name) {
+            const auto response = ResponseCurve::named(name);
+            if (!response) {
+              throw CLI::ValidationError("--response",
+                                         "'" + name +
+                                             "' is no response curve; accepted: linear, srgb, or a "
+                                             "gamma from 0.2 to 5");
+            }
+            options->parameters.response = *response;
+          },
+          "How the camera turned light into grey levels: linear, srgb or a gamma")
+      ->type_name("CURVE")
+      ->default_str("linear");
   command.add_option("--max-markers", parameters.max_markers, "More are not reported")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()))
       ->type_name("N")

@@ -36,3 +36,14 @@ TEST_CASE("a gamma that no camera has is refused") {
   CHECK_THROWS_AS(ResponseCurve::power(0), std::invalid_argument);
   CHECK_THROWS_AS(ResponseCurve::power(6), std::invalid_argument);
 }
+
+TEST_CASE("curves have names for the configuration") {
+  REQUIRE(ResponseCurve::named("srgb").has_value());
+  CHECK(ResponseCurve::named("srgb")->light(128.0) == ResponseCurve::srgb().light(128.0));
+  CHECK(ResponseCurve::named("2.2")->light(128.0) == ResponseCurve::power(2.2).light(128.0));
+  CHECK(ResponseCurve::named("linear")->light(77.0) == doctest::Approx(77));
+  for (const char* wrong : {"", "sRGB ", "gamma", "0", "2.2x", "nan", "-1", "99"}) {
+    CAPTURE(wrong);
+    CHECK_FALSE(ResponseCurve::named(wrong).has_value());
+  }
+}
