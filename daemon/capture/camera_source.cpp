@@ -92,7 +92,6 @@ void CameraSource::try_to_open() {
     camera_.emplace(open_camera(before_ ? find_again(cameras, *before_)
                                         : choose_camera(cameras, parameters_.choice)));
     watch_stream();
-    before_ = camera_->information;
     controls_->attach(camera_->information.node);
   } catch (const CameraError& error) {
     camera_.reset();
@@ -284,6 +283,7 @@ void CameraSource::note_frame() {
   camera_->last_frame_ns = monotonic_ns();
   if (camera_->any_frame) return;
   camera_->any_frame = true;
+  before_ = camera_->information;  // one that never gave a frame may be replaced by another
   timer_.arm(camera_->last_frame_ns + patience_ns());
   log_info("{} {}", state_ == CameraState::kLost ? "the camera is back:" : "camera", description());
   state_ = CameraState::kStreaming;
@@ -307,7 +307,7 @@ std::string CameraSource::description() const {
                      camera_->stream->cached() ? ", cached buffers" : "");
 }
 
-// As find_again() knows it. Nothing before it was there for the first time.
+// As find_again() knows it. Nothing before the first frame.
 std::string CameraSource::identity() const {
   if (!before_) return {};
   return before_->serial.empty() ? fmt::format("{} at {}", before_->card, before_->bus)

@@ -89,7 +89,7 @@ class CameraSource final : public FrameSource {
   DeviceWatch watch_;
   MonotonicTimer timer_;  // while streaming: silence; else: the next try
   std::optional<OpenCamera> camera_;
-  std::optional<CameraInformation> before_;  // the camera that was used last
+  std::optional<CameraInformation> before_;  // the camera that gave the last frame
   CameraState state_ = CameraState::kStarting;
   std::int64_t pause_ns_ = 0;
   std::string told_;           // the last reason in the log; empty after a frame

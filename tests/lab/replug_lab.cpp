@@ -222,7 +222,9 @@ TEST_CASE("controls are set automatics first, and by other threads in a running 
   // By name the time comes before the mode would allow it: dynamic framerate, then time.
   DaemonUnderTest daemon(film, {"camera.controls={exposure_time_absolute: 120, auto_exposure: 1, "
                                 "exposure_dynamic_framerate: false, gain: 3}"});
-  REQUIRE(daemon.poses_arrive(kPatienceMs));
+  const bool poses = daemon.poses_arrive(kPatienceMs);
+  INFO(daemon.log());
+  REQUIRE(poses);
   CHECK(camera.exposure_mode() == 1);
   CHECK(camera.exposure_time() == 120);
   CHECK(camera.exposure_priority() == 0);

@@ -221,6 +221,24 @@ TEST_CASE("another camera is not taken in place of the lost one") {
   CHECK(camera.state().opens == opens);
 }
 
+TEST_CASE("a camera that went before its first frame may be replaced by another") {
+  FakeCamera camera;
+  CameraSource source({}, camera);
+  open(source, camera);
+  camera.state().plugged = false;
+  camera.break_off(ENODEV);
+  REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
+  CHECK_FALSE(source.next().has_value());
+  CHECK(source.identity().empty());
+  camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false}};
+  camera.state().listed = false;
+  camera.state().plugged = true;  // the fake opens its one device for all nodes
+  camera.state().error = 0;
+  open(source, camera);
+  camera.deliver({.sequence = 0});
+  CHECK(wait_for_frame(source).has_value());
+}
+
 TEST_CASE("every way to fail at the start is waited out") {
   FakeCamera camera;
   SUBCASE("busy") {

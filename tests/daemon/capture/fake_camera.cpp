@@ -246,7 +246,7 @@ FakeCamera::FakeCamera() : state_(std::make_shared<State>()) {
 
 std::vector<CameraInformation> FakeCamera::cameras() const {
   std::vector<CameraInformation> all;
-  if (state_->plugged) {
+  if (state_->plugged && state_->listed) {
     all.push_back({"/dev/video0", {}, "Fake", "usb-1", "A", "fake", state_->multiplanar});
   }
   all.insert(all.end(), state_->others.begin(), state_->others.end());

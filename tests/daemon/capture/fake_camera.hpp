@@ -48,6 +48,7 @@ class FakeCamera final : public CameraSystem {
   // The state, for tests to set and to look at.
   struct State {
     bool plugged = true, multiplanar = false;
+    bool listed = true;  // among the cameras that there are
     std::vector<CameraInformation> others;
     std::vector<std::uint32_t> formats;
     std::vector<std::uint32_t> emulated;  // by libv4l2, in addition
