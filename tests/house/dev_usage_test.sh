@@ -35,5 +35,5 @@ expect 2 "--seconds needs a whole number" run --seconds
 expect 2 "--seconds needs a whole number" run --seconds=-1
 expect 2 "unknown option '--minutes'" run --minutes 3
 expect 2 "ceilings takes no arguments" ceilings 3
-expect 2 "lint takes no arguments" lint core
+expect 2 "lint: there is no folder 'cores'" lint cores
 exit $faults
