@@ -56,8 +56,10 @@ std::optional<std::size_t> chroma_bytes(std::string_view space, std::size_t w, s
 void parse_rate(std::string_view text, Y4mFormat& format) {
   const auto colon = text.find(':');
   const auto rate = parse<std::int64_t>(text.substr(0, colon));
-  const auto base =
-      colon == std::string_view::npos ? std::nullopt : parse<std::int64_t>(text.substr(colon + 1));
+  // Without a colon there is nothing behind it, which is no number.
+  const std::string_view behind =
+      colon == std::string_view::npos ? std::string_view() : text.substr(colon + 1);
+  const auto base = parse<std::int64_t>(behind);
   if (!rate || !base || *rate < 0 || *base < 0) {
     throw std::runtime_error(fmt::format("has the frame rate \"{}\", not as in F30:1", text));
   }
