@@ -40,7 +40,7 @@ class ControlRig final : public LoopControl {
   ControlRig& operator=(const ControlRig&) = delete;
 
   std::string socket() const { return folder_.file("control.sock"); }
-  std::string file() const { return context_->arena_file; }
+  std::string file() const { return folder_.file("arena.yaml"); }
   // Longest that the loop needed for leaving its frame, microseconds, for each frame.
   std::vector<double> hand_over_us() {
     ending_ = true;
