@@ -52,7 +52,8 @@ struct MarkerPixels::Row {
 };
 
 void MarkerPixels::Columns::make_room(int more) {
-  const auto needed = static_cast<std::size_t>(used + more + kPixelBlock);
+  const int total = used + more + kPixelBlock;
+  const auto needed = static_cast<std::size_t>(total);
   if (x.size() >= needed) return;
   for (auto* column : {&x, &y, &grey, &weight}) column->resize(2 * needed);
 }

@@ -38,8 +38,8 @@ class MarkerSearch {
   int smallest_spacing() const { return smallest_spacing_; }
 
  private:
-  // Pixels u0 ... u1 of a row that belong to something known: a marker, with all that lies inside of
-  // it, or the dark part of what turned out to be none.
+  // Pixels u0 ... u1 of a row that belong to something known: a marker, with all that lies inside
+  // of it, or the dark part of what turned out to be none.
   enum class Owner : std::int32_t { kMarker, kNoMarker };
   struct Claim {
     std::int32_t u0, u1, next_in_row;

@@ -140,6 +140,7 @@ struct Kernels {
 };
 
 // The attribute is the whole difference between the sets of kernels; the bodies are inlined.
+// NOLINTBEGIN(bugprone-macro-parentheses): attributes and names take none.
 #define ROUNDEL_KERNELS(suffix, attribute)                                                 \
   attribute void followed_outer_##suffix(const PhotometricModel& m, const PixelColumns& p, \
                                          PhotometricSums& s) {                             \
@@ -169,6 +170,7 @@ struct Kernels {
                                        code_outer_##suffix,     code_code_##suffix,        \
                                        outer_##suffix,          plain_##suffix};
 
+// NOLINTEND(bugprone-macro-parentheses)
 ROUNDEL_KERNELS(baseline, )
 #if defined(__x86_64__)
 // Without fused multiply-add, which would round otherwise than the baseline.

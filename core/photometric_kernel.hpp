@@ -34,11 +34,12 @@ enum PhotometricUnknown {
 // A marker's pixels, one array a quantity (what vector units want). The length is a multiple of
 // kPixelBlock; the rest is filled with pixels of no weight.
 struct PixelColumns {
-  const float* x;  // normalised, lens removed, relative to the marker's middle
-  const float* y;
-  const float* grey;    // linear in the light
-  const float* weight;  // root of it: grey levels of noise a level of light; 0 for filling
-  int count;
+  const float* x = nullptr;  // normalised, lens removed, relative to the marker's middle
+  const float* y = nullptr;
+  const float* grey = nullptr;  // linear in the light
+  const float* weight =
+      nullptr;  // root of it: grey levels of noise a level of light; 0 for filling
+  int count = 0;
   int every = 1;  // of so many blocks one is used: a rough step can do with a part of the marker
 };
 constexpr int kPixelBlock = 32;

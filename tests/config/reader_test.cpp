@@ -87,9 +87,9 @@ TEST_CASE("a wrong type is an error with its place and what is accepted") {
         "max_datagram");
   CHECK(
       error_for("- a\n").starts_with("roundel.yaml:1:1: is not a section; accepted: keys source"));
-  CHECK(
-      error_for("source: {a: 1}\n").find("the section is no source; accepted: simulator, files, camera") !=
-      std::string::npos);
+  CHECK(error_for("source: {a: 1}\n")
+            .find("the section is no source; accepted: simulator, files, camera") !=
+        std::string::npos);
 }
 
 TEST_CASE("a value out of range is an error with its place and the range") {
@@ -133,10 +133,10 @@ TEST_CASE("a camera is described by its place or its name, its mode and its cont
   CHECK(c.source == SourceKind::kCamera);
   CHECK(c.camera.device == "/dev/v4l/by-id/usb-x");
   CHECK(c.camera.width == 1280);
-  CHECK(c.camera.controls == std::map<std::string, std::string>{
-                                 {"auto_exposure", "Manual Mode"},
-                                 {"gain", "20"},
-                                 {"focus_automatic_continuous", "false"}});
+  CHECK(c.camera.controls ==
+        std::map<std::string, std::string>{{"auto_exposure", "Manual Mode"},
+                                           {"gain", "20"},
+                                           {"focus_automatic_continuous", "false"}});
   CHECK(parse("camera: {controls: }\n").camera.controls.empty());
   CHECK(parse("", {"camera.controls={gain: 3}"}).camera.controls.at("gain") == "3");
 }

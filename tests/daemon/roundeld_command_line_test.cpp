@@ -49,8 +49,9 @@ TEST_CASE("--print-config prints the commented default, which is right as it is"
 
 TEST_CASE("a camera is checked as far as that goes without it") {
   CHECK(roundeld({"--check-config", "--set", "source=camera"}).status == 0);
-  check_refused(roundeld({"--set", "source=camera", "--set", "camera.format=RGB3"}), 2,
-                "camera.format: \"RGB3\" is no format that can be read; accepted: auto, GREY, NV12");
+  check_refused(
+      roundeld({"--set", "source=camera", "--set", "camera.format=RGB3"}), 2,
+      "camera.format: \"RGB3\" is no format that can be read; accepted: auto, GREY, NV12");
 }
 
 TEST_CASE("--help and --version end with 0") {
