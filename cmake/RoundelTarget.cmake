@@ -35,6 +35,12 @@ function(roundel_test name)
   # and take half the time to build.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} doctest::doctest)
-  target_compile_definitions(${name} PRIVATE ROUNDEL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   doctest_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
+endfunction()
+
+# Only the sources named get the path of tests/data: it differs between checkouts, and with it what a
+# compiler cache can use again.
+function(roundel_test_data)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY
+    COMPILE_DEFINITIONS ROUNDEL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
 endfunction()
