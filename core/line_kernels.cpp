@@ -146,14 +146,19 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
 ROUNDEL_LINE_KERNELS(baseline, , 16)
 #if defined(__x86_64__)
 ROUNDEL_LINE_KERNELS(avx2, __attribute__((target("avx2"))), 32)
+ROUNDEL_LINE_KERNELS(avx512,
+                     __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq,"
+                                           "prefer-vector-width=512"))),
+                     64)
 #endif
 
 }  // namespace
 
 const LineKernels& line_kernels(VectorUnit unit) {
 #if defined(__x86_64__)
-  static const bool wide = __builtin_cpu_supports("avx2") != 0;
-  if (unit == VectorUnit::kBest && wide) return k_kernels_avx2;
+  static const int width = widest_vectors();
+  if (unit == VectorUnit::kBest && width >= 512) return k_kernels_avx512;
+  if (unit != VectorUnit::kBaseline && width >= 256) return k_kernels_avx2;
 #endif
   return k_kernels_baseline;
 }

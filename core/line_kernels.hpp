@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/photometric_kernel.hpp"
+#include "core/vector_unit.hpp"
 
 namespace roundel {
 

@@ -67,6 +67,7 @@ class Observer {
 
   struct Candidate;
   void observe_with_camera(const LumaView& frame, Observation& observation);
+  void fit_roughly(const Segment& segment, std::array<Candidate, 2>& candidates);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 
   DetectorParameters parameters_;

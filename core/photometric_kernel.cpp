@@ -4,6 +4,7 @@
 
 #include "core/photometric_edges.hpp"
 #include "core/simd.hpp"
+#include "core/vector_unit.hpp"
 
 namespace roundel {
 
@@ -175,18 +176,17 @@ ROUNDEL_KERNELS(baseline, )
 #if defined(__x86_64__)
 // Without fused multiply-add, which would round otherwise than the baseline.
 ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))))
+// Twice as many registers of the same width.
+ROUNDEL_KERNELS(avx512, __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq"))))
 #endif
-
-const Kernels& best_kernels() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return k_kernels_avx2;
-#endif
-  return k_kernels_baseline;
-}
 
 const Kernels& kernels(VectorUnit unit) {
-  static const Kernels& best = best_kernels();
-  return unit == VectorUnit::kBest ? best : k_kernels_baseline;
+#if defined(__x86_64__)
+  static const int width = widest_vectors();
+  if (unit == VectorUnit::kBest && width >= 512) return k_kernels_avx512;
+  if (unit != VectorUnit::kBaseline && width >= 256) return k_kernels_avx2;
+#endif
+  return k_kernels_baseline;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::uint64_t bits_between(int first, int last) {
 
 }  // namespace
 
-std::uint64_t RegionFiller::classify(int column, int v) const {
+__attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v) const {
   const int u = column * kWord, count = std::min(kWord, frame_.width - u);
   const std::uint8_t* luma = frame_.row(v) + u * frame_.pixel_stride;
   if (frame_.pixel_stride == 1 && count == kWord) return bits_of_64_below(luma, threshold_);
@@ -32,9 +32,11 @@ std::uint64_t RegionFiller::classify(int column, int v) const {
   return bits_of_64_below(bytes.data(), threshold_);
 }
 
-RegionFiller::Word& RegionFiller::word(int column, int v) {
+inline RegionFiller::Word& RegionFiller::word(int column, int v) {
   Word& word = words_[static_cast<std::size_t>(v * words_a_row_ + column)];
-  if (word.stamp != stamp_) word = {classify(column, v), stamp_};
+  if (word.stamp != stamp_) [[unlikely]] {
+    word = {classify(column, v), stamp_};
+  }
   return word;
 }
 
