@@ -50,9 +50,7 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
   }
   const double reach = std::min(kMaxReach, kReachBlurs * start.blur_px + kReachSlack);
   InnerEdges inner;
-  const bool coded = last.pattern.kind == Pattern::Kind::kCode;
-  inner.low = coded ? kCodeInnerRatio : start.inner_ratio;
-  inner.high = coded ? kCodeOuterRatio : start.inner_ratio;
+  if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
   if (!fit_.load(frame, *camera_, here, parameters_.diameter_m / 2, reach, inner)) {
     return std::nullopt;
   }
@@ -69,13 +67,10 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
   // Motion blur changes with every turn and has to be fitted along.
   const bool in_motion = std::hypot(start.stretch_u, start.stretch_d) > kMotionStretch;
   plan.unknowns = in_motion ? kCodeUnknowns : kFollowedUnknowns;
-  // So close to where it is expected, one step is enough, mostly. What it leaves is counted as if
-  // all that moves went the same way at every edge: the truth is some quarter of it.
-  plan.settled = 0.5;
-  plan.rough_steps = 0;
-  plan.min_steps = 1;
+  // So close to where it is expected, some of the pixels are enough for the first step.
+  plan.rough_every = 4;
   plan.max_steps = 4;
-  plan.variance = last.mean_square;
+  plan.settled = 0.1;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * segment.levels.contrast();
   EdgeLook look;
   if (last.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;

@@ -15,7 +15,7 @@ namespace {
 constexpr int kMaxMissed = 30;        // frames; then a track ends
 constexpr int kMaxImplausible = 15;   // frames; a blurred or half covered marker recovers
 constexpr int kNewcomerFrames = 5;    // a full search is spread over as many frames
-constexpr int kReadingInterval = 32;  // frames
+constexpr int kReadingInterval = 16;  // frames
 constexpr double kLocalReach = 2.0;   // of the search around an expected place, in diameters
 constexpr double kMaxGrowth = 1.8;    // of a marker's extent from frame to frame
 constexpr double kSameSize = 1.6;     // ratio of sizes of one marker in neighbouring frames
