@@ -59,6 +59,7 @@ class Daemon final : private LoopControl {
   void fit_arena();
   void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena);
   void publish_status();
+  DropCounts drops_of_session() const;
 
   Load load_;
   SignalDescriptor& signals_;
@@ -68,7 +69,7 @@ class Daemon final : private LoopControl {
   Statistics statistics_;
   FrameInformation information_;  // of the last frame; the states hold in between
   status_t status_{};             // reused, so that its texts are not copied every second
-  std::int64_t dropped_before_session_ = 0;
+  DropCounts drops_before_session_;
   std::int64_t unsent_before_session_ = 0;
   bool told_of_other_resolution_ = false;
 

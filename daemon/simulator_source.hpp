@@ -20,7 +20,7 @@ class SimulatorSource final : public FrameSource {
   int descriptor() const override { return timer_.descriptor(); }
   std::optional<FrameLease> next() override;
   CameraState state() const override { return state_; }
-  std::int64_t dropped() const override { return dropped_; }
+  DropCounts drops() const override { return {.newer = left_out_}; }
   int width() const override { return arena_.camera().width; }
   int height() const override { return arena_.camera().height; }
   bool simulated() const override { return true; }
@@ -37,7 +37,7 @@ class SimulatorSource final : public FrameSource {
   CameraState state_ = CameraState::kStarting;
   std::int64_t start_ns_ = 0;
   std::int64_t last_frame_ = -1;
-  std::int64_t dropped_ = 0;
+  std::int64_t left_out_ = 0;
 };
 
 }  // namespace roundel

@@ -19,8 +19,9 @@ std::vector<std::string> command(const TemporaryDirectory& folder, const CameraM
                                  std::vector<std::string> settings) {
   const std::string lens = folder.file("camera.yaml");
   write_camera_file(lens, {"lab", camera});
-  settings.insert(settings.end(), {"source=camera", "control.socket=",
-                                   std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
+  settings.insert(settings.end(),
+                  {"source=camera", "control.socket=" + folder.file("control.sock"),
+                   "control.group=", std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
   std::vector<std::string> words = {ROUNDELD_BINARY};
   for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
   return words;

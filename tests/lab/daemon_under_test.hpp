@@ -41,6 +41,7 @@ class DaemonUnderTest {
   ChildProcess& process() { return process_; }
   const std::string& log();  // so far
   bool has_logged(const std::string& text) { return log().find(text) != std::string::npos; }
+  std::string socket() const { return folder_.file("control.sock"); }
   int descriptors() const;
   long resident_kb() const;
 

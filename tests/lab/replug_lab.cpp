@@ -170,6 +170,31 @@ TEST_CASE("a silent USB camera is lost, and back when it sends again") {
   CHECK(fault_in(daemon.frames()) == "");
 }
 
+TEST_CASE("a daemon that was stopped for a while publishes nothing old") {
+  const Film& film = Film::shared();
+  UsbCamera camera(film, description(UsbFormat::kGrey));
+  DaemonUnderTest daemon(film, {});
+  REQUIRE(daemon.poses_arrive(kPatienceMs));
+  daemon.forget();
+  // Every stop interrupts whatever it waits for.
+  for (int i = 0; i < 20; ++i) {
+    daemon.process().signal(SIGSTOP);
+    daemon.receive(10);
+    daemon.process().signal(SIGCONT);
+    daemon.receive(10);
+  }
+  daemon.process().signal(SIGSTOP);
+  daemon.receive(1500);
+  daemon.process().signal(SIGCONT);
+  REQUIRE(daemon.poses_arrive(kPatienceMs));
+  const std::size_t before = daemon.statuses().size();
+  REQUIRE(daemon.receive(kPatienceMs, [&] { return daemon.statuses().size() > before + 1; }));
+  CHECK(daemon.statuses().back().dropped_stale >= 1);
+  CHECK_FALSE(daemon.published_us(header_t::CAMERA_LOST, 0).has_value());
+  CHECK(fault_in(daemon.frames()) == "");
+  CHECK(pictures_are_fresh(film, camera, daemon.frames()));
+}
+
 TEST_CASE("of two cameras the one that was used is taken back, never the other") {
   const Film& film = Film::shared();
   UsbCamera ours(film, description(UsbFormat::kGrey, "OURS"), 0);
