@@ -89,6 +89,30 @@ TEST_CASE("a calibration that fails says why and changes nothing") {
   CHECK(rig.arenas_set == 0);
 }
 
+TEST_CASE("a calibration that is asked for before the first frame waits for it") {
+  ControlRig rig(false);
+  const std::string request = R"({"width": 3, "height": 2})";
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", request), "202"));
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", request), "running already"));
+  const Json waiting = body_of(ask(rig.socket(), "GET", "/v1/calibration"))["run"];
+  CHECK(waiting["state"] == "running");
+  CHECK(waiting["text"] == "waiting for the first frame");
+  rig.show_frames();
+  CHECK(wait_for_calibration(rig)["run"]["state"] == "done");
+}
+
+TEST_CASE("a calibration without any frame ends with its time limit, and says so") {
+  const ControlRig rig(false);
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena",
+                R"({"width": 3, "height": 2, "time_limit": 0.3})"),
+            "202"));
+  const Json run = wait_for_calibration(rig)["run"];
+  CHECK(run["state"] == "failed");
+  CHECK(run["text"] == "no frame has come from the camera yet");
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", R"({"width": 0, "height": 2})"),
+            "400 Bad Request"));
+}
+
 TEST_CASE("a bumped camera is told to the loop, and calibrated again if that is configured") {
   ControlRig rig;
   wait_for_frames(rig);
