@@ -28,6 +28,9 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_flag("--lock-memory", command.lock_memory,
+               "keeps all of its memory from being swapped out")
+      ->envname("ROUNDEL_LOCK_MEMORY");
   bool check = false, print = false;
   auto* const check_flag =
       app.add_flag("--check-config", check, "says whether the configuration is right, and ends");
