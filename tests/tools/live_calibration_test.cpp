@@ -40,14 +40,15 @@ class BoardRig {
                           (loop ? "true" : "false") + "}\nlcm: {url: \"memq://\"}\n" +
                           "arena: {file: " + folder_.file("arena.yaml") +
                           "}\ncontrol: {socket: " + socket() + ", group: \"\"}\n")});
-    REQUIRE(daemon_->wait_for("poses to", 60s));
-    for (int i = 0; i < 3000 && !std::filesystem::exists(socket()); ++i) daemon_->wait(10ms);
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (run_program({ROUNDEL_BINARY, "status", "--socket", socket()}).status != 0) {
+      REQUIRE(std::chrono::steady_clock::now() < deadline);
+    }
   }
 
   std::string socket() const { return folder_.file("control.sock"); }
   std::string truth() const { return folder_.file("true.yaml"); }
   std::string result() const { return folder_.file("camera.yaml"); }
-  ChildProcess& daemon() { return *daemon_; }
 
   std::vector<std::string> command(std::vector<std::string> more) const {
     std::vector<std::string> all = {ROUNDEL_BINARY, "calibrate", "camera", "--socket", socket()};
