@@ -88,17 +88,21 @@ const std::string& DaemonUnderTest::log() {
   return process_.errors();
 }
 
+bool DaemonUnderTest::has_logged(const std::string& text) {
+  return receive(2000, [&] { return log().find(text) != std::string::npos; });
+}
+
 int DaemonUnderTest::descriptors() const {
   const std::string folder = fmt::format("/proc/{}/fd", process_.pid());
   return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-long DaemonUnderTest::resident_kb() const {
+long DaemonUnderTest::memory_kb(const std::string& kind) const {
   std::ifstream status(fmt::format("/proc/{}/status", process_.pid()));
   std::string word;
   long kb = 0;
   while (status >> word) {
-    if (word == "VmRSS:") status >> kb;
+    if (word == kind) status >> kb;
   }
   return kb;
 }
