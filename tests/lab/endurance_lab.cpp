@@ -45,6 +45,7 @@ TEST_CASE("streaming for long drops nothing unexplained, and memory stays as it 
   CHECK(received + dropped == taken);
   CHECK(std::abs(camera.frames_sent() - sent - taken) <= 2);
   CHECK(daemon.anonymous_kb() <= anonymous_kb + 64);
+  CHECK(daemon.resident_kb() <= resident_kb + 100);
   CHECK(daemon.descriptors() == descriptors);
   report(
       fmt::format("{} s: {} frames sent by the camera, {} published, {} dropped; resident {} kB, "
