@@ -22,6 +22,9 @@ void add_options(CLI::App& app, CommandLine& command) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_flag("--lock-memory", command.lock_memory,
+               "keeps all of its memory from being swapped out")
+      ->envname("ROUNDEL_LOCK_MEMORY");
   const auto act = [&command](CommandLine::Action action) {
     return [&command, action] { command.action = action; };
   };

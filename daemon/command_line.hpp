@@ -18,6 +18,7 @@ struct CommandLine {
   Action action = Action::kRun;
   std::string config;                  // path; empty: the embedded default
   std::vector<std::string> overrides;  // "key.path=value"
+  bool lock_memory = false;
 
   LoadedConfiguration load() const;
 };

@@ -53,7 +53,8 @@ std::string value_cases(const std::string& name, const CommandEntry& command) {
     if (option.value.empty()) continue;
     std::vector<std::string> patterns;
     for (const std::string& option_name : option.names) {
-      patterns.push_back(fmt::format("'{}{}{}'", command.path, command.path.empty() ? "" : " ", option_name));
+      patterns.push_back(
+          fmt::format("'{}{}{}'", command.path, command.path.empty() ? "" : " ", option_name));
     }
     std::string action = ":";
     if (!option.choices.empty()) {
@@ -90,7 +91,8 @@ std::string bash_completion(const std::string& program, const std::vector<Comman
     words += word_case(command);
     for (const OptionEntry& option : command.options) has_keys |= option.value == "KEY=VALUE";
   }
-  std::string script = fmt::format("# Completion of {} for bash, made from its table of options.\n\n", program);
+  std::string script =
+      fmt::format("# Completion of {} for bash, made from its table of options.\n\n", program);
   script += fmt::format(
       "_{0}_words() {{\n"
       "  mapfile -t COMPREPLY < <(compgen -W \"$1\" -- \"$current\")\n"

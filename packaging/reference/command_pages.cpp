@@ -19,7 +19,8 @@ std::string tag_of(const OptionEntry& option) {
     }
   }
   if (option.value_is_optional) value = "[" + value + "]";
-  return tag + (tag.empty() ? "" : " ") + value + (option.names.empty() && option.repeated ? "..." : "");
+  return tag + (tag.empty() ? "" : " ") + value +
+         (option.names.empty() && option.repeated ? "..." : "");
 }
 
 std::string sentence(const std::string& text) {

@@ -36,8 +36,9 @@ std::vector<CommentedLine> commented_lines(std::string_view text, std::string_vi
   for (std::string line; std::getline(stream, line);) {
     const std::size_t column = comment_column(line, mark);
     const std::string code = trimmed(std::string_view(line).substr(0, column));
-    const std::string comment =
-        column == std::string::npos ? "" : trimmed(std::string_view(line).substr(column + mark.size()));
+    const std::string comment = column == std::string::npos
+                                    ? ""
+                                    : trimmed(std::string_view(line).substr(column + mark.size()));
     if (!code.empty()) {
       lines.push_back({line.find_first_not_of(' '), code, comment, pending});
       pending.clear();

@@ -9,9 +9,10 @@ namespace roundel {
 // A line of a commented file (YAML, LCM types) with what its comments say about it.
 struct CommentedLine {
   std::size_t indentation = 0;
-  std::string code;     // without the comment; empty for a comment that stands by itself
-  std::string comment;  // behind the code, going on below it in the same column; or the one by itself
-  std::string before;   // on the lines right above; an empty comment line makes a paragraph: "\n"
+  std::string code;  // without the comment; empty for a comment that stands by itself
+  std::string
+      comment;  // behind the code, going on below it in the same column; or the one by itself
+  std::string before;  // on the lines right above; an empty comment line makes a paragraph: "\n"
 };
 
 // `mark` begins a comment: "#" or "//".

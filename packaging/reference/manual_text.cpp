@@ -36,13 +36,26 @@ std::string literal(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
-      case '\\': escaped += "\\e"; break;
-      case '-': escaped += "\\-"; break;
-      case '~': escaped += "\\(ti"; break;
-      case '^': escaped += "\\(ha"; break;
-      case '`': escaped += "\\(ga"; break;
-      case '\'': escaped += "\\(aq"; break;
-      default: escaped += c;
+      case '\\':
+        escaped += "\\e";
+        break;
+      case '-':
+        escaped += "\\-";
+        break;
+      case '~':
+        escaped += "\\(ti";
+        break;
+      case '^':
+        escaped += "\\(ha";
+        break;
+      case '`':
+        escaped += "\\(ga";
+        break;
+      case '\'':
+        escaped += "\\(aq";
+        break;
+      default:
+        escaped += c;
     }
   }
   return escaped;

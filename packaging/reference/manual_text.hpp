@@ -6,8 +6,8 @@
 
 namespace roundel {
 
-// A part of a manual page in the man(7) macros. Text is prose: `this` in backquotes becomes bold, the
-// rest is escaped as roff wants it, and lines are broken after sentences and before column 80.
+// A part of a manual page in the man(7) macros. Text is prose: `this` in backquotes becomes bold,
+// the rest is escaped as roff wants it, and lines are broken after sentences and before column 80.
 class ManualText {
  public:
   void section(std::string_view name);     // .SS
@@ -28,7 +28,8 @@ std::string literal(std::string_view text);
 std::string bold(std::string_view text);
 std::string italic(std::string_view text);
 
-// A template with every line "@NAME@" replaced by `text`; throws std::runtime_error if there is none.
+// A template with every line "@NAME@" replaced by `text`; throws std::runtime_error if there is
+// none.
 std::string with_part(std::string page, std::string_view name, const std::string& text);
 
 }  // namespace roundel
