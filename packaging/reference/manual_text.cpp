@@ -70,12 +70,13 @@ std::string italic(std::string_view text) {
 }
 
 void ManualText::section(std::string_view name) {
+  follows_heading_ = true;
   text_ += fmt::format(".SS \"{}\"\n", literal(name));
 }
 
 void ManualText::paragraph(std::string_view text) {
   if (text.empty()) return;
-  text_ += ".PP\n";
+  if (!follows_heading_) text_ += ".PP\n";
   prose(text);
 }
 
@@ -89,12 +90,13 @@ void ManualText::item(std::span<const std::string> tags, std::string_view text) 
 }
 
 void ManualText::prose(std::string_view text) {
+  follows_heading_ = false;
   std::istringstream words{std::string(text)};
   std::string line, word;
   bool is_literal = false;
   const auto flush = [&] {
     if (line.empty()) return;
-    if (line[0] == '.' || line[0] == '\\' || line[0] == '"') line.insert(0, "\\&");
+    if (line[0] == '.') line.insert(0, "\\&");
     text_ += line + "\n";
     line.clear();
   };

@@ -21,6 +21,7 @@ class ManualText {
   void prose(std::string_view text);
 
   std::string text_;
+  bool follows_heading_ = false;  // which makes a paragraph by itself
 };
 
 // Literal text as roff: what is to be typed. Hyphens stay what they are.

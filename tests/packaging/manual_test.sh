@@ -61,10 +61,10 @@ same "roundel.yaml" "$keys" \
 lcm=$(rendered roundel-lcm.5)
 for type in "$types"/*.lcm; do
   name=$(basename "$type" .lcm)
-  fields=$(sed -n 's,//.*,,; s/^ *\(const *[a-z0-9_]*\|[a-z0-9_]*\) *\([A-Za-z][^ ;=]*\) *[;=].*/\2/p' "$type" |
+  fields=$(sed -n '/^package/d; s,//.*,,; s/^ *\(const *[a-z0-9_]*\|[a-z0-9_]*\) *\([A-Za-z][^ ;=]*\) *[;=].*/\2/p' "$type" |
     LC_ALL=C sort)
   same "$name" "$fields" "$(subsection "$name" <<<"$lcm" |
-    sed -nE 's/^ {7}([a-z0-9_]+ [a-z][a-z0-9_]*(\[[a-z0-9_]*\])?|[A-Z0-9_]+ = [0-9-]+)( +.*)?$/\1/p' |
+    sed -nE 's/^ {7}((boolean|float|string|[a-z0-9]+_t) [a-z][a-z0-9_]*(\[[a-z0-9_]*\])?|[A-Z0-9_]+ = [0-9-]+)( +.*)?$/\1/p' |
     sed -E 's/ = .*//; s/^[a-z0-9_]+ //' | LC_ALL=C sort)"
 done
 exit $faults
