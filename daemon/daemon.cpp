@@ -28,7 +28,11 @@ void copy(const LumaView& from, GreyImage& to) {
   for (int v = 0; v < from.height; ++v) {
     std::uint8_t* const row =
         to.pixels.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(from.width);
-    for (int u = 0; u < from.width; ++u) row[u] = from.at(u, v);
+    if (from.pixel_stride == 1) {
+      std::copy_n(from.row(v), from.width, row);
+    } else {
+      for (int u = 0; u < from.width; ++u) row[u] = from.at(u, v);
+    }
   }
 }
 
@@ -130,10 +134,9 @@ bool Daemon::carry_frame() {
     fit_tracker(frame.luma.width, frame.luma.height);
   }
   const std::span<const Marker> markers = parts_.tracker->track(frame.luma);
-  FrameSnapshot& snapshot = control_.next_snapshot();
-  snapshot.has_picture = control_.wants_picture();
-  if (snapshot.has_picture) copy(frame.luma, snapshot.picture);
-  lease->give_back();
+  // Somebody who looks waits for the copy; robots don't.
+  const bool looked_at = control_.wants_picture();
+  if (!looked_at) lease->give_back();
   const std::span<const ArenaPose> arena = arena_.locate(markers);
   times.tracked_us = now().mono_us;
 
@@ -145,14 +148,17 @@ bool Daemon::carry_frame() {
   parts_.broadcast->publish(information_, markers, arena);
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
-  leave_snapshot(markers, arena);
+  leave_snapshot(markers, arena, looked_at ? &frame.luma : nullptr);
   frame_carried_ = true;
   return true;
 }
 
 // For everything that happens beside the frames. Copies into memory that is kept.
-void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena) {
+void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
+                            const LumaView* picture) {
   FrameSnapshot& snapshot = control_.next_snapshot();
+  snapshot.has_picture = picture != nullptr;
+  if (snapshot.has_picture) copy(*picture, snapshot.picture);
   snapshot.information = information_;
   snapshot.markers.assign(markers.begin(), markers.end());
   snapshot.arena.assign(arena.begin(), arena.end());

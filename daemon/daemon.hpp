@@ -61,7 +61,8 @@ class Daemon final : private LoopControl {
   void fit_tracker(int width, int height);
   void load_arena_file();
   void fit_arena();
-  void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena);
+  void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
+                      const LumaView* picture);
   void publish_status();
   void tell_service_manager();
 
