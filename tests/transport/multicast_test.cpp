@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -61,6 +62,10 @@ TEST_CASE("a packet without a message is garbage, whatever was received before i
       REQUIRE(::sendto(socket, packet.data(), packet.size(), 0,
                        reinterpret_cast<const sockaddr*>(&group), sizeof group) > 0);
     }
+    // Before another one comes into the same place.
+    pollfd descriptor = {subscriber.descriptor(), POLLIN, 0};
+    REQUIRE(::poll(&descriptor, 1, 10'000) == 1);
+    CHECK(subscriber.next_frame(0s) == nullptr);
   }
   ::close(socket);
   // What is sent properly behind them arrives.
