@@ -6,6 +6,10 @@
 
 #include "config/reader.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace roundel {
 
 struct CommandLine {
@@ -18,6 +22,9 @@ struct CommandLine {
 
   LoadedConfiguration load() const;
 };
+
+// The options of roundeld; parsing fills in the command, which must live as long as the app.
+void add_options(CLI::App& app, CommandLine& command);
 
 // What is to be done, or the exit status where parsing already did it (--help, --version, usage
 // errors, which are told on standard error).
