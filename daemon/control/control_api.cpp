@@ -9,6 +9,7 @@
 #include "daemon/control/controls_json.hpp"
 #include "daemon/control/snapshot_picture.hpp"
 #include "daemon/control/state_json.hpp"
+#include "daemon/control/web_page.hpp"
 
 namespace roundel {
 namespace {
@@ -71,6 +72,7 @@ struct ControlApi::Route {
 
 std::span<const ControlApi::Route> ControlApi::routes() {
   static constexpr std::array kRoutes = {
+      Route{"/", "GET", &ControlApi::page},
       Route{"/v1/status", "GET", &ControlApi::status},
       Route{"/v1/markers", "GET", &ControlApi::markers},
       Route{"/v1/events", "GET", &ControlApi::events},
@@ -108,6 +110,10 @@ HttpResponse ControlApi::handle(const HttpRequest& request) {
   HttpResponse response = error_answer(kMethod, request.path + " is for " + allowed);
   response.allow = allowed;
   return response;
+}
+
+HttpResponse ControlApi::page(const HttpRequest& /*request*/) {
+  return web_page();
 }
 
 HttpResponse ControlApi::status(const HttpRequest& /*request*/) {

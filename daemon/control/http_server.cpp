@@ -81,9 +81,16 @@ MHD_Result HttpServer::Impl::handle(MHD_Connection* connection, const char* url,
     auto arriving = std::make_unique<Arriving>();
     arriving->request.method = method;
     arriving->request.path = url;
-    const char* const overlay =
-        MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "overlay");
-    arriving->request.plain_picture = overlay != nullptr && std::string(overlay) == "0";
+    const auto value = [connection](MHD_ValueKind kind, const char* name) {
+      const char* const text = MHD_lookup_connection_value(connection, kind, name);
+      return std::string(text == nullptr ? "" : text);
+    };
+    arriving->request.plain_picture = value(MHD_GET_ARGUMENT_KIND, "overlay") == "0";
+    arriving->request.token = value(MHD_GET_ARGUMENT_KIND, "token");
+    arriving->request.host = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
+    arriving->request.origin = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
+    arriving->request.authorization = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_AUTHORIZATION);
+    arriving->request.cookie = value(MHD_COOKIE_KIND, kTokenCookie);
     const char* const length =
         MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
     // Refused before it is sent; the connection ends with the answer.
@@ -121,6 +128,9 @@ MHD_Result HttpServer::Impl::answer(MHD_Connection* connection, HttpResponse res
   [[maybe_unused]] const Body* const owned = body.release();
   MHD_add_response_header(made, MHD_HTTP_HEADER_CONTENT_TYPE, response.type.c_str());
   MHD_add_response_header(made, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
+  for (const auto& [name, text] : response.headers) {
+    MHD_add_response_header(made, name.c_str(), text.c_str());
+  }
   if (!response.allow.empty()) {
     MHD_add_response_header(made, MHD_HTTP_HEADER_ALLOW, response.allow.c_str());
   }
