@@ -31,7 +31,7 @@ class ControlRig final : public LoopControl {
     context.arena_camera = scene_.arena_camera();
     context.arena_file = folder_.file("arena.yaml");
     context_ = std::make_shared<const TrackingContext>(context);
-    center_.serve({socket(), ""});
+    center_.serve({socket(), "", "", ""});
     loop_ = std::thread([this] { run(); });
   }
   ~ControlRig() override {

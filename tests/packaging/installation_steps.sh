@@ -21,6 +21,9 @@ sed -n '/^[<>]/p' differences | tr '\n' ' ' >changed_lines
 [ "$(cat changed_lines)" = '< source: simulator > source: camera ' ] ||
   fail "the installed configuration is not the default with a camera: $(cat differences)"
 roundel detect --help >/dev/null || fail "roundel does not run"
+man -w roundel roundeld roundel.yaml roundel-lcm >/dev/null || fail "a manual page is missing"
+bash -c '. /usr/share/bash-completion/completions/roundel && complete -p roundel' >/dev/null ||
+  fail "bash does not complete roundel"
 python3 -c 'import roundel; roundel.frame_t().encode()' || fail "the Python types can't be imported"
 
 echo '# mine' >>/etc/roundel/roundel.yaml
