@@ -33,7 +33,7 @@ class InstalledService {
 
  private:
   std::string unit_;
-  std::string cursor_;
+  std::string since_;
 };
 
 // Asks again and again, for half a minute of this machine's time at most.

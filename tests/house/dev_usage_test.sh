@@ -24,6 +24,7 @@ expect() {
 
 expect 0 "run [--seconds N] [--robots N] [--host-network]" help
 expect 0 "lab [--long]" help
+expect 0 "boot [DOCTEST OPTIONS]" help
 expect 0 "package          the Debian packages" help
 expect 0 "usage: ./dev COMMAND"
 expect 0 "usage: ./dev COMMAND" --help
