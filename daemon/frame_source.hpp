@@ -66,8 +66,8 @@ class FrameSource {
   // at state(). The lease before must have ended.
   virtual std::optional<FrameLease> next() = 0;
 
-  // CLOCK_MONOTONIC, nanoseconds: if all is well, descriptor() is readable by then: for a frame, for
-  // another try to reach the camera, or because the camera is lost.
+  // CLOCK_MONOTONIC, nanoseconds: if all is well, descriptor() is readable by then: for a frame,
+  // for another try to reach the camera, or because the camera is lost.
   virtual std::int64_t due_ns() const = 0;
 
   virtual CameraState state() const = 0;
