@@ -38,6 +38,11 @@ bool is_response(FieldTarget value) {
   return ResponseCurve::named(*std::get<std::string*>(value)).has_value();
 }
 
+bool is_inner_ratio(FieldTarget value) {
+  const double ratio = *std::get<double*>(value);
+  return ratio == 0 || ratio >= 0.2;
+}
+
 bool is_arena_mode(FieldTarget value) {
   const std::string& mode = *std::get<std::string*>(value);
   return mode == "2d" || mode == "3d";
@@ -101,6 +106,8 @@ constexpr std::array kFields = {
     Field{"marker.bits", ROUNDEL_TARGET(detector.bits), 0, kMaxBits, bits_exist,
           "0 (plain WhyCon markers), or 2 to 16"},
     Field{"marker.hamming", ROUNDEL_TARGET(detector.hamming), 1, kMaxHamming},
+    Field{"marker.inner_ratio", ROUNDEL_TARGET(detector.inner_ratio), 0, 0.7, is_inner_ratio,
+          "0 (not known), or 0.2 to 0.7"},
 
     Field{"marker.height", ROUNDEL_TARGET(mount.height), 0, 10},
     Field{"marker.offset_x", ROUNDEL_TARGET(mount.offset_x), -10, 10},

@@ -7,10 +7,11 @@ namespace roundel {
 
 // What the user sets; everything has a usable default. Read once, when a detector is made.
 struct DetectorParameters {
-  double diameter_m = kDefaultDiameter;              // outer black diameter of every marker
-  int bits = 8;                                      // WhyCode bits; 0 = plain WhyCon markers only
-  int hamming = 1;                                   // minimum Hamming distance of the id set
-  int max_markers = 1000;                            // more are not reported
+  double diameter_m = kDefaultDiameter;   // outer black diameter of every marker
+  int bits = 8;                           // WhyCode bits; 0 = plain WhyCon markers only
+  double inner_ratio = kPlainInnerRatio;  // of plain markers: white disc over black one; 0: unknown
+  int hamming = 1;                        // minimum Hamming distance of the id set
+  int max_markers = 1000;                 // more are not reported
   ResponseCurve response = ResponseCurve::linear();  // of the camera
 
   int min_diameter_px = 12;             // of the marker's outline, across its shorter side

@@ -38,6 +38,8 @@ void require(bool condition, const char* what) {
 void check(const DetectorParameters& p) {
   require(p.diameter_m > 0 && std::isfinite(p.diameter_m),
           "the marker's diameter must be positive");
+  require(p.inner_ratio == 0 || (p.inner_ratio >= 0.2 && p.inner_ratio <= 0.7),
+          "inner_ratio must be 0.2 to 0.7, or 0 when it is not known");
   require(p.max_markers >= 1 && p.max_markers <= 100000, "max_markers must be 1 to 100000");
   require(p.min_diameter_px >= 6, "min_diameter_px must be 6 or more");
   require(p.max_diameter_px >= p.min_diameter_px,
@@ -63,6 +65,12 @@ bool may_be_plain_centre(const Segment& segment) {
   return std::abs(inner.a / (ratio * segment.ellipse.a) - 1) < tolerance &&
          std::abs(inner.b / (ratio * segment.ellipse.b) - 1) < tolerance;
 }
+
+// A printed disc is as large as it should be to so much of the black one's radius. The picture
+// tells a print of another ratio by as much as blur, an unknown curve of the camera and the pixel
+// grid leave of its area.
+constexpr double kPrintedRatioSigma = 0.0005;
+constexpr double kOtherRatio = 0.012, kOtherRatioPx = 0.5;
 
 double mean_radius(const Ellipse& ellipse) {
   return std::sqrt(ellipse.a * ellipse.b);
@@ -111,6 +119,19 @@ struct Observer::Candidate {
   }
 };
 
+// The ratio that was configured, unless the picture shows another print.
+Pattern Observer::plain_pattern(const Segment& segment) const {
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::kPlain;
+  pattern.inner_ratio = std::sqrt(segment.bright_share);
+  const double tolerance = kOtherRatio + kOtherRatioPx / mean_radius(segment.ellipse);
+  if (std::abs(pattern.inner_ratio - parameters_.inner_ratio) < tolerance) {
+    pattern.inner_ratio = parameters_.inner_ratio;
+    pattern.inner_sigma = kPrintedRatioSigma;
+  }
+  return pattern;
+}
+
 void Observer::observe_with_camera(const LumaView& frame, Observation& observation) {
   const Segment& segment = observation.segment;
   const double radius_m = parameters_.diameter_m / 2;
@@ -154,8 +175,7 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
       candidate.hypothesis.log_likelihood =
           plain_log_likelihood(segment, segment.bright_share, candidate.centre);
       if (may_be_plain_centre(segment)) {
-        candidate.pattern.kind = Pattern::Kind::kPlain;
-        candidate.pattern.inner_ratio = std::sqrt(segment.bright_share);
+        candidate.pattern = plain_pattern(segment);
       }
     }
     candidate.hypothesis.pose = pose_from_circle(candidate.circle, yaw);
@@ -187,8 +207,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     Candidate& candidate = candidates[i];
     auto& fitted = candidate.fitted;
     PoseHypothesis& hypothesis = candidate.hypothesis;
-    EdgeLook look;
-    if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
+    const EdgeLook look = edge_look(candidate.pattern);
     const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
     if (loaded && lead < kDecided) {
       const PhotometricState start =

@@ -59,13 +59,11 @@ class Observer {
   Marker to_marker(const Observation& observation, int pose_index) const;
 
  private:
-  // How far a plain marker's edges may be shifted as a whole, pixels: beside an unknown inner
-  // ratio, a shift of all edges looks like another distance.
-  static constexpr double kPlainShiftSigma = 0.02;
   // Residuals that no noise explains, share of the contrast.
   static constexpr double kModelError = 0.01;
 
   struct Candidate;
+  Pattern plain_pattern(const Segment& segment) const;
   void observe_with_camera(const LumaView& frame, Observation& observation);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 

@@ -21,7 +21,6 @@ constexpr double kMaxStretch = 0.9;
 // be read; they keep what can't be told apart from running away.
 constexpr double kSlopePrior = 0.3;  // of the light, share a radius
 constexpr double kStretchPrior = 0.5;
-constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
 // Where a fit ends: a step that takes so many variances of the residuals off the sum of squares
@@ -29,8 +28,32 @@ constexpr double kPinned = 1e-4;  // for what this pattern does not show
 // to whole grey levels and the model itself leave some variance.
 constexpr double kSettled = 30, kLeastVariance = 0.25;
 
+// What the model gets wrong of an edge that is all box (corners, curves in a pixel), share of the
+// contrast as if it were noise of every pixel. Blur makes the more of it good the more there is.
+constexpr double kBoxError = 0.008;
+
 // Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
 constexpr double kRobust = 3.0, kOutlier = 8.0;
+
+}  // namespace
+
+EdgeLook edge_look(const Pattern& pattern) {
+  constexpr double kKnownRatio = 0.01, kSmallShift = 0.02;  // share of the radius; pixels
+  EdgeLook look;
+  const bool known = pattern.kind == Pattern::Kind::kCode ||
+                     (pattern.kind == Pattern::Kind::kPlain && pattern.inner_sigma < kKnownRatio);
+  if (!known) look.shift_sigma_px = kSmallShift;
+  return look;
+}
+
+namespace {
+
+// Variance of the grey levels about the model, that of pixels and what makes them err together.
+double variance_of(const PhotometricState& state, double mean_square) {
+  const double box = kPixelVariance / (state.blur_px * state.blur_px);
+  const double error = kBoxError * box * box * state.contrast;
+  return std::max(mean_square, kLeastVariance) + error * error;
+}
 
 }  // namespace
 
@@ -127,7 +150,7 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   }
   Step step;
   step.mean_square = static_cast<double>(sums.squares / std::max(1.0F, sums.weights));
-  const double variance = std::max(step.mean_square, kLeastVariance);
+  const double variance = variance_of(state, step.mean_square);
   const auto add = [&](int unknown, double difference, double deviation) {
     const double weight = variance / (deviation * deviation);
     normal_matrix(unknown, unknown) += weight;
@@ -144,7 +167,7 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   }
   if constexpr (kCount > kCodeUnknowns) {
     const bool plain = pattern.kind == Pattern::Kind::kPlain;
-    add(kInner, pattern.inner_ratio - state.inner_ratio, plain ? kInnerPrior : kPinned);
+    add(kInner, pattern.inner_ratio - state.inner_ratio, plain ? pattern.inner_sigma : kPinned);
   }
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
@@ -235,7 +258,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.mean_square = step.mean_square;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
       result.trust = static_cast<double>(sums.weights) / result.pixels;
-      result.covariance = to_camera_axes(state, step.mean_square * step.inverse);
+      result.covariance = to_camera_axes(state, variance_of(state, step.mean_square) * step.inverse);
       return result;
     }
   }

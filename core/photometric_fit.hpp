@@ -19,13 +19,14 @@ namespace roundel {
 struct Pattern {
   enum class Kind {
     kCode,    // the teeth of a word
-    kPlain,   // a white disc; its ratio is fitted
+    kPlain,   // a white disc
     kUnknown  // only the outer rim is used
   };
   Kind kind = Kind::kUnknown;
   int bits = 0;
   std::uint32_t word = 0;  // canonical; starts at the pose's x axis
-  double inner_ratio = 0;  // first guess, kPlain
+  double inner_ratio = 0;  // kPlain: as far as it is known, and one standard deviation
+  double inner_sigma = 0.1;
 };
 
 // How edges look in this image, as far as it is known from elsewhere.
@@ -35,6 +36,10 @@ struct EdgeLook {
   double shift_px = 0;       // growth of dark over bright
   double shift_sigma_px = 0.3;
 };
+
+// With an unknown inner ratio, or without anything known inside, a shift of all edges looks like
+// another distance: then it is taken for small.
+EdgeLook edge_look(const Pattern& pattern);
 
 // Everything that the picture of a marker depends on.
 struct PhotometricState {

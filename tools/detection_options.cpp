@@ -25,6 +25,12 @@ std::shared_ptr<DetectionOptions> add_detection_options(CLI::App& command,
       ->type_name("N")
       ->capture_default_str();
   command
+      .add_option("--inner-ratio", parameters.inner_ratio,
+                  "Of plain markers: white over black diameter; 0: not known")
+      ->check(CLI::Range(0.2, 0.7) | CLI::IsMember({0.0}))
+      ->type_name("RATIO")
+      ->default_str("0.4098");
+  command
       .add_option("--arena", options->arena_file,
                   "Arena calibration (roundel calibrate arena): adds arena coordinates")
       ->type_name("FILE");
