@@ -35,7 +35,8 @@ bool is_printable(FieldTarget value) {
 }
 
 bool is_response(FieldTarget value) {
-  return ResponseCurve::named(*std::get<std::string*>(value)).has_value();
+  const std::string& name = *std::get<std::string*>(value);
+  return name == "auto" || ResponseCurve::named(name);
 }
 
 bool is_inner_ratio(FieldTarget value) {
@@ -84,7 +85,7 @@ constexpr std::array kFields = {
           "text of 1 to 64 printable characters"},
     Field{"camera.calibration", ROUNDEL_TARGET(camera.calibration), 0, 4096},
     Field{"camera.response", ROUNDEL_TARGET(camera.response), 1, 20, is_response,
-          "linear, srgb, or a gamma from 0.2 to 5"},
+          "auto, linear, srgb, or a gamma from 0.2 to 5"},
     Field{"camera.device", ROUNDEL_TARGET(camera.device), 0, 4096, is_path_or_empty,
           "a path, as in /dev/video0 or /dev/v4l/by-id/..., or nothing"},
     Field{"camera.match_card", ROUNDEL_TARGET(camera.match_card), 0, 100},

@@ -172,9 +172,7 @@ class Reader {
                           "and camera.crop_height go together; accepted: both 0 (no crop), or both "
                           "more");
     }
-    if (const auto response = ResponseCurve::named(c.camera.response)) {
-      loaded_.values.detector.response = *response;
-    }
+    loaded_.values.detector.response = ResponseCurve::named(c.camera.response);
     return std::move(loaded_);
   }
 

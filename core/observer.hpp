@@ -5,6 +5,7 @@
 
 #include "core/camera_model.hpp"
 #include "core/code_reader.hpp"
+#include "core/curve_evidence.hpp"
 #include "core/detector_parameters.hpp"
 #include "core/luma_view.hpp"
 #include "core/marker.hpp"
@@ -54,6 +55,11 @@ class Observer {
                                     const PoseHypothesis& last, const Ellipse& last_ellipse,
                                     const Eigen::Vector3d& turn);
 
+  // Takes the response curve for what the markers observed so far tell, if that has changed.
+  bool settle_curve();
+  // Back to knowing nothing of the curve, unless it was given.
+  void forget_curve();
+
   // The observation as users get it, with the given one of its poses; id and track are the
   // caller's.
   Marker to_marker(const Observation& observation, int pose_index) const;
@@ -67,9 +73,14 @@ class Observer {
   void observe_with_camera(const LumaView& frame, Observation& observation);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 
+  void weigh_curve(const LumaView& frame, const Segment& segment, const Candidate& candidate);
+
   DetectorParameters parameters_;
   std::optional<CameraModel> camera_;
   std::optional<CodeReader> reader_;  // none when bits is 0
+  ResponseCurve response_;            // in use
+  double exponent_ = 1;               // of it, where it was not given
+  CurveEvidence curve_evidence_;
   PhotometricFit fit_;
 };
 

@@ -236,6 +236,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
     PixelColumns outer = pixels_.outer(), inner = pixels_.inner();
     outer.every = inner.every = taken <= plan.rough_steps ? 2 : 1;
     add_outer_pixels(model, outer, unknowns, sums);
+    const float outer_squares = sums.squares, outer_weights = sums.weights;
     if (inside) add_inner_pixels(model, inner, unknowns, sums);
     const Step step = unknowns == kFollowedUnknowns
                           ? solve<kFollowedUnknowns>(state, pattern, look, sums, plan, taken)
@@ -256,9 +257,16 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.state = state;
       result.state.pose.orientation = with_positive_w(pose.orientation);
       result.mean_square = step.mean_square;
+      const auto mean = [](float squares, float weights) {
+        return static_cast<double>(squares / std::max(1.0F, weights));
+      };
+      result.outer_square = mean(outer_squares, outer_weights);
+      result.inner_square = mean(sums.squares - outer_squares, sums.weights - outer_weights);
+      result.inner_pixels = inside ? pixels_.inner_count() : 0;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
       result.trust = static_cast<double>(sums.weights) / result.pixels;
-      result.covariance = to_camera_axes(state, variance_of(state, step.mean_square) * step.inverse);
+      result.covariance =
+          to_camera_axes(state, variance_of(state, step.mean_square) * step.inverse);
       return result;
     }
   }

@@ -63,9 +63,11 @@ struct FitPlan {
 struct PhotometricPose {
   PhotometricState state;
   PoseCovariance covariance = PoseCovariance::Zero();
-  double mean_square = 0;  // of the residuals, grey levels squared
-  int pixels = 0;          // that the fit used
-  double trust = 0;        // share of them that it believed: the rest looks like something else
+  double mean_square = 0;                     // of the residuals, grey levels squared
+  int pixels = 0;                             // that the fit used
+  double outer_square = 0, inner_square = 0;  // the same of the outer rim, and of what is inside
+  int inner_pixels = 0;
+  double trust = 0;  // share of them that it believed: the rest looks like something else
 };
 
 // Fits a marker's pose to the grey values of its image (METHOD.md section 6): every pixel near an
@@ -77,6 +79,9 @@ struct PhotometricPose {
 class PhotometricFit {
  public:
   explicit PhotometricFit(const ResponseCurve& response) : response_(response) {}
+
+  // What is loaded from now on is seen through another curve.
+  void set_response(const ResponseCurve& response) { response_ = response; }
 
   // Takes the pixels near the edges of the marker under an ellipse, `reach_px` to either side.
   // False when there are too few or the lens model ends.
