@@ -3,8 +3,9 @@
 function(roundel_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+  target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now)  # what is linked can't be redirected
   if(ROUNDEL_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

@@ -68,6 +68,9 @@ struct ArenaSettings {
 struct ControlSettings {
   std::string socket = "/run/roundel/control.sock";  // empty: none
   std::string group = "roundel";                     // who may use it; empty: roundeld's own group
+  std::string web;    // ADDRESS:PORT that the same is served on over TCP; empty: none
+  std::string token;  // that web clients must have; empty: none
+  bool operator==(const ControlSettings&) const = default;
 };
 
 struct LcmSettings {

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "config/mounts.hpp"
+#include "config/web_address.hpp"
 
 namespace roundel {
 namespace {
@@ -58,6 +59,20 @@ bool are_mounts(FieldTarget value) {
 bool is_path_or_empty(FieldTarget value) {
   const std::string& text = *std::get<std::string*>(value);
   return text.empty() || text.front() == '/';
+}
+
+bool is_web_address_or_empty(FieldTarget value) {
+  const std::string& text = *std::get<std::string*>(value);
+  return text.empty() || parse_web_address(text).has_value();
+}
+
+bool is_token_or_empty(FieldTarget value) {
+  const std::string& text = *std::get<std::string*>(value);
+  const auto fits = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '~';
+  };
+  return text.empty() ||
+         (text.size() >= kLeastToken && std::all_of(text.begin(), text.end(), fits));
 }
 
 constexpr std::array kFields = {
@@ -141,6 +156,10 @@ constexpr std::array kFields = {
 
     Field{"control.socket", ROUNDEL_TARGET(control.socket), 0, 107},
     Field{"control.group", ROUNDEL_TARGET(control.group), 0, 32},
+    Field{"control.web", ROUNDEL_TARGET(control.web), 0, 64, is_web_address_or_empty,
+          "an address in numbers and a port, as in 127.0.0.1:8080 or [::1]:8080, or nothing"},
+    Field{"control.token", ROUNDEL_TARGET(control.token), 0, 128, is_token_or_empty,
+          "16 to 128 of the characters A-Z a-z 0-9 _ - . ~, or nothing"},
 };
 
 #undef ROUNDEL_TARGET

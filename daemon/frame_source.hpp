@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/camera_model.hpp"
@@ -63,6 +64,10 @@ class FrameSource {
   // at state(). The lease before must have ended.
   virtual std::optional<FrameLease> next() = 0;
 
+  // CLOCK_MONOTONIC, nanoseconds: if all is well, descriptor() is readable by then: for a frame, for
+  // another try to reach the camera, or because the camera is lost.
+  virtual std::int64_t due_ns() const = 0;
+
   virtual CameraState state() const = 0;
   virtual std::int64_t dropped() const = 0;  // frames left out since the source was made
   virtual int width() const = 0;             // of the frames, as far as it is known beforehand
@@ -70,6 +75,8 @@ class FrameSource {
   virtual bool simulated() const = 0;  // no camera took these frames just now
   virtual std::string description() const = 0;
 
+  // Why a camera gives no frames, in words, while it is waited for; empty: it is not.
+  virtual std::string_view waits_because() const { return {}; }
   // What tells this camera from every other, whenever it is plugged in; empty: unknown. An arena
   // calibration belongs to it, and to the crop.
   virtual std::string identity() const { return {}; }

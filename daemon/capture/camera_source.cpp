@@ -58,13 +58,13 @@ CameraSource::CameraSource(const CameraParameters& parameters, const CameraSyste
   if (!poll_) throw std::system_error(errno, std::generic_category(), "epoll");
   add_to_poll(poll_.get(), watch_.descriptor(), EPOLLIN);
   add_to_poll(poll_.get(), timer_.descriptor(), EPOLLIN);
-  timer_.arm(monotonic_ns());
+  retry_at(monotonic_ns());
 }
 
 std::optional<FrameLease> CameraSource::next() {
   if (watch_.take() && !camera_) {
     pause_ns_ = 0;
-    timer_.arm(monotonic_ns());
+    retry_at(monotonic_ns());
   }
   if (!camera_) {
     if (timer_.take()) try_to_open();
@@ -157,6 +157,7 @@ bool CameraSource::format_changed() {
 
 // While a camera is lost the log hears no more, but for one that is there and can't be used.
 void CameraSource::note_failure(const CameraError& error) {
+  reason_ = error.what();
   const bool absent = dynamic_cast<const CameraAbsent*>(&error) != nullptr;
   if (state_ == CameraState::kStarting) {
     if (error.what() != told_ && (told_.empty() || !absent)) {
@@ -172,7 +173,8 @@ void CameraSource::note_failure(const CameraError& error) {
 void CameraSource::lose(const std::string& reason) {
   controls_->attach({});
   if (state_ == CameraState::kStreaming) {
-    log_warning("camera lost: {}: {}; waits for it", describe(camera_->information), reason);
+    reason_ = fmt::format("{}: {}", describe(camera_->information), reason);
+    log_warning("camera lost: {}; waits for it", reason_);
     state_ = CameraState::kLost;
   } else {
     note_failure(CameraError(fmt::format("{}: {}", describe(camera_->information), reason)));
@@ -184,8 +186,13 @@ void CameraSource::lose(const std::string& reason) {
   schedule_retry();
 }
 
+void CameraSource::retry_at(std::int64_t instant_ns) {
+  retry_ns_ = instant_ns;
+  timer_.arm(instant_ns);
+}
+
 void CameraSource::schedule_retry() {
-  timer_.arm(monotonic_ns() + pause_ns_);
+  retry_at(monotonic_ns() + pause_ns_);
   pause_ns_ = std::clamp(2 * pause_ns_, kFirstPauseNs, kLongestPauseNs);
 }
 
@@ -285,9 +292,11 @@ void CameraSource::note_frame() {
   camera_->any_frame = true;
   before_ = camera_->information;  // one that never gave a frame may be replaced by another
   timer_.arm(camera_->last_frame_ns + patience_ns());
-  log_info("{} {}", state_ == CameraState::kLost ? "the camera is back:" : "camera", description());
+  // The first time it is part of the summary.
+  if (state_ == CameraState::kLost) log_info("the camera is back: {}", description());
   state_ = CameraState::kStreaming;
   pause_ns_ = 0;
+  reason_.clear();
   told_.clear();
   told_in_vain_ = false;
 }

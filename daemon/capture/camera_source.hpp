@@ -37,7 +37,11 @@ class CameraSource final : public FrameSource {
 
   int descriptor() const override { return poll_.get(); }
   std::optional<FrameLease> next() override;
+  std::int64_t due_ns() const override {
+    return camera_ ? camera_->last_frame_ns + patience_ns() : retry_ns_;
+  }
   CameraState state() const override { return state_; }
+  std::string_view waits_because() const override { return reason_; }
   std::int64_t dropped() const override { return counts_.total(); }
   std::string explanation_of_drops() const override;
   int width() const override { return camera_ ? camera_->reader.width() : 0; }
@@ -71,6 +75,7 @@ class CameraSource final : public FrameSource {
   void watch_stream();
   void note_failure(const CameraError& error);
   void lose(const std::string& reason);
+  void retry_at(std::int64_t instant_ns);
   void schedule_retry();
   bool format_changed();
   void check_silence();
@@ -91,7 +96,9 @@ class CameraSource final : public FrameSource {
   std::optional<OpenCamera> camera_;
   std::optional<CameraInformation> before_;  // the camera that gave the last frame
   CameraState state_ = CameraState::kStarting;
+  std::int64_t retry_ns_ = 0;  // without a camera: of the next try
   std::int64_t pause_ns_ = 0;
+  std::string reason_;         // of the last failure; empty after a frame
   std::string told_;           // the last reason in the log; empty after a frame
   bool told_in_vain_ = false;  // that the camera is there, but can't be used
   std::vector<std::string> told_remarks_;

@@ -8,6 +8,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/daemon/capture/fake_camera.hpp"
 #include "tests/daemon/wait_for_descriptor.hpp"
+#include "transport/clock.hpp"
 
 using namespace roundel;
 
@@ -201,6 +202,37 @@ TEST_CASE("an unplugged camera is lost, closed, and taken back as it was set") {
   CHECK(lease->frame().number == 1);  // numbers go on
   CHECK(source.dropped() == 0);
   CHECK(camera.state().controls[0].value == 5);
+}
+
+TEST_CASE(
+    "whoever asks is told what the camera is waited for, and by when it comes or is tried again") {
+  FakeCamera camera;
+  camera.state().plugged = false;
+  CameraSource source({}, camera);
+  CHECK(source.waits_because().empty());  // it has not been looked for
+  CHECK(source.due_ns() <= monotonic_ns());
+  REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
+  CHECK_FALSE(source.next().has_value());
+  CHECK(source.waits_because() == "there is no camera that can capture");
+  const std::int64_t before_ns = source.due_ns();
+  REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
+  CHECK(monotonic_ns() >= before_ns);
+  source.next();
+  CHECK(source.due_ns() > before_ns);
+
+  camera.state().plugged = true;
+  open(source, camera);
+  camera.deliver({.sequence = 0});
+  const std::int64_t delivered_ns = monotonic_ns();
+  REQUIRE(wait_for_frame(source).has_value());
+  CHECK(source.waits_because().empty());
+  // Four frames' time at 30 frames/s is less than the time-out.
+  CHECK(source.due_ns() >= delivered_ns + 400'000'000);
+  CHECK(source.due_ns() <= monotonic_ns() + 400'000'000);
+
+  camera.break_off(ENODEV);
+  CHECK(reaches(source, CameraState::kLost));
+  CHECK(source.waits_because().find("/dev/video0") != std::string_view::npos);
 }
 
 TEST_CASE("another camera is not taken in place of the lost one") {
