@@ -393,7 +393,8 @@ std::string Daemon::try_to_reload() {
     changed = changed_keys(parts_.configuration.values, next.configuration.values);
     const Configuration& values = next.configuration.values;
     // How robots wear their markers is another matter.
-    const bool other_markers = touches({"marker.diameter", "marker.bits", "marker.hamming"});
+    const bool other_markers =
+        touches({"marker.diameter", "marker.bits", "marker.hamming", "marker.inner_ratio"});
     const bool new_source = touches({"source"}) || touches(source_sections(values.source));
     if (new_source) {
       next.source = make_source(next.configuration);
