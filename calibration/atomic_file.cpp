@@ -52,6 +52,10 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
+void require_writable(const std::string& path) {
+  const TemporaryFile probe(path);
+}
+
 void write_file_atomically(const std::string& path, std::string_view contents) {
   constexpr mode_t kMode = 0644;
   TemporaryFile file(path);

@@ -10,4 +10,7 @@ namespace roundel {
 // Throws std::runtime_error that names the file; the old contents are untouched then.
 void write_file_atomically(const std::string& path, std::string_view contents);
 
+// Throws like it if a file of that name can't be written now, without touching it.
+void require_writable(const std::string& path);
+
 }  // namespace roundel

@@ -25,8 +25,8 @@ constexpr double kPaperSigma = 0.03;  // radians
 // A marker that says otherwise by more than this is not understood well enough to be corrected.
 constexpr double kMaxTurn = 0.3;  // radians
 
-// What no fit can know: print, paper, the picture's own processing.
-constexpr double kFloorPx = 0.01;
+// No centre is better than that, whatever a fit says.
+constexpr double kLeastPx = 1e-4;
 
 DetectorParameters parameters_of(const Board& board) {
   DetectorParameters parameters;
@@ -183,7 +183,7 @@ BoardPoint BoardDetector::point_of(const Seen& seen, const PoseHypothesis& hypot
   const Eigen::Matrix<double, 2, 3> slope = pixel_slope(camera_, at);
   const Eigen::Matrix3d spread = hypothesis.covariance.topLeftCorner<3, 3>();
   point.covariance = slope * spread * slope.transpose();
-  point.covariance += kFloorPx * kFloorPx * Eigen::Matrix2d::Identity();
+  point.covariance += kLeastPx * kLeastPx * Eigen::Matrix2d::Identity();
   return point;
 }
 

@@ -62,18 +62,10 @@ void tell_certainty(const BundleEquations& equations, const BundleOptions& optio
     result.covariance.setConstant(std::numeric_limits<double>::infinity());
     return;
   }
-  // Focal lengths and lens coefficients differ by many orders of magnitude: scaled to unit
-  // diagonal.
-  const Eigen::VectorXd scale =
-      reduced->matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * reduced->matrix * scale.asDiagonal();
-  const auto size = scaled.rows();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  scaled.ldlt().solve(Eigen::MatrixXd::Identity(size, size)) *
-                                  scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scaled_inverse(reduced->matrix);
   const Eigen::VectorXd weights = prior_weights(options);
   result.unknowns = 6 * static_cast<double>(views);
-  for (Eigen::Index k = 0; k < size; ++k) {
+  for (Eigen::Index k = 0; k < inverse.rows(); ++k) {
     if (is_estimated(k, options)) result.unknowns += 1 - weights[k] * inverse(k, k);
   }
   result.covariance = inverse.topLeftCorner<kIntrinsicParameters, kIntrinsicParameters>() *
@@ -99,7 +91,7 @@ double whitened_residual(const BoardPoint& point, const BundleState& state,
   const auto pixel = board_pixel(state.camera, board_in_camera, state.place(point));
   if (!pixel) return std::numeric_limits<double>::infinity();
   const Eigen::Vector2d residual = point.pixel - *pixel;
-  return std::sqrt(residual.dot(point.covariance.inverse() * residual));
+  return std::sqrt(residual.dot(state.spread(point).inverse() * residual));
 }
 
 BundleResult adjust(std::span<const BoardView> views, const BundleState& start,

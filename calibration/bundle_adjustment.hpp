@@ -18,9 +18,14 @@ struct BundleState {
   std::vector<Eigen::Vector3d> offsets;  // of the markers by id - 1, from where the board has them,
                                          // metres, board frame; zero beyond the end
   std::vector<Pose> poses;               // board in camera
+  double floor_px = 0;  // deviation that all points share beside their own; adjust() leaves it
 
   // Where a marker's centre is on this board.
   Eigen::Vector3d place(const BoardPoint& point) const;
+  // Covariance of where it was seen.
+  Eigen::Matrix2d spread(const BoardPoint& point) const {
+    return point.covariance + floor_px * floor_px * Eigen::Matrix2d::Identity();
+  }
 };
 
 struct BundleOptions {

@@ -42,6 +42,28 @@ Eigen::VectorXd prior_weights(const BundleOptions& options) {
   return weights;
 }
 
+Eigen::Matrix<double, 2, Eigen::Dynamic> projection_by_shared(const BoardPoint& point,
+                                                              const BoardProjection& projection,
+                                                              const BundleOptions& options) {
+  Eigen::Matrix<double, 2, Eigen::Dynamic> by =
+      Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, shared_count(options));
+  for (int k = 0; k < kIntrinsicParameters; ++k) {
+    if (is_estimated(k, options)) by.col(k) = projection.by_intrinsics.col(k);
+  }
+  if (point.id <= options.markers)
+    by.middleCols<3>(kIntrinsicParameters + 3 * (static_cast<Eigen::Index>(point.id) - 1)) =
+        projection.by_place;
+  return by;
+}
+
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  const auto size = scaled.rows();
+  return scale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(size, size)) *
+         scale.asDiagonal();
+}
+
 bool BundleEquations::assemble(std::span<const BoardView> views, const BundleState& state,
                                const BundleOptions& options) {
   const Eigen::Index shared = shared_count(options);
@@ -58,7 +80,7 @@ bool BundleEquations::assemble(std::span<const BoardView> views, const BundleSta
       for (int k = 0; k < kIntrinsicParameters; ++k) {
         if (!is_estimated(k, options)) projection->by_intrinsics.col(k).setZero();
       }
-      add(point, *projection, i, options);
+      add(point, state.spread(point), *projection, i, options);
     }
   }
   for (int k = 0; k < kIntrinsicParameters; ++k) {
@@ -67,10 +89,11 @@ bool BundleEquations::assemble(std::span<const BoardView> views, const BundleSta
   return true;
 }
 
-void BundleEquations::add(const BoardPoint& point, const BoardProjection& projection,
-                          std::size_t view, const BundleOptions& options) {
+void BundleEquations::add(const BoardPoint& point, const Eigen::Matrix2d& spread,
+                          const BoardProjection& projection, std::size_t view,
+                          const BundleOptions& options) {
   const Eigen::Vector2d residual = point.pixel - projection.pixel;
-  Eigen::Matrix2d information = point.covariance.inverse();
+  Eigen::Matrix2d information = spread.inverse();
   information *= huber(residual.dot(information * residual), options.robust_scale).weight;
   constexpr int kOwn =
       static_cast<int>(kIntrinsicParameters) + 3;  // intrinsics and the marker's own offset

@@ -23,6 +23,17 @@ bool is_estimated(Eigen::Index shared, const BundleOptions& options);
 // Weights of the shared unknowns' squares beside the whitened residuals'.
 Eigen::VectorXd prior_weights(const BundleOptions& options);
 
+// How a point's projection moves with them, its view's pose unchanged.
+Eigen::Matrix<double, 2, Eigen::Dynamic> projection_by_shared(const BoardPoint& point,
+                                                              const BoardProjection& projection,
+                                                              const BundleOptions& options);
+
+// Of a symmetric matrix whose unknowns differ by many orders of magnitude, as focal lengths and
+// lens coefficients do.
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix);
+
+using PoseByShared = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
 // The normal equations of the adjustment: [A B; B' C] with one block B, C a view.
 class BundleEquations {
  public:
@@ -43,10 +54,14 @@ class BundleEquations {
   // The step of a view's pose that belongs to a step of the shared unknowns.
   PoseStep pose_step(const Reduced& reduced, std::size_t view,
                      const Eigen::VectorXd& shared_step) const;
+  // How that pose follows the shared unknowns, with the sign changed.
+  PoseByShared pose_by_shared(const Reduced& reduced, std::size_t view) const {
+    return reduced.poses[view].solve(b_[view].transpose());
+  }
 
  private:
-  void add(const BoardPoint& point, const BoardProjection& projection, std::size_t view,
-           const BundleOptions& options);
+  void add(const BoardPoint& point, const Eigen::Matrix2d& spread,
+           const BoardProjection& projection, std::size_t view, const BundleOptions& options);
 
   Eigen::MatrixXd a_;
   Eigen::VectorXd a_side_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibration/bundle_adjustment.hpp"
+#include "calibration/free_residuals.hpp"
 #include "calibration/intrinsic_refusal.hpp"
 #include "calibration/intrinsic_start.hpp"
 #include "calibration/projection_uncertainty.hpp"
@@ -23,6 +24,8 @@ const Eigen::Vector3d kOffsetSigma(0.01, 0.01, 0.05);
 constexpr double kRayleighMedian = 1.17741;
 // Residuals whose deviation is far below that of the points say that there is no noise (in tests).
 constexpr double kLeastScale = 0.02;
+// Of what points share beside their own noise, until the residuals tell.
+constexpr double kFirstFloorPx = 0.01;
 constexpr double kRobust = 2.5, kOutlier = 5.0;  // deviations
 
 IntrinsicMask mask(const IntrinsicOptions& options) {
@@ -55,9 +58,19 @@ double robust_deviation(std::span<const BoardView> views, const BundleState& sta
   return std::max(kLeastScale, *middle / kRayleighMedian);
 }
 
+// The same by their squares, given how many of them are free.
+double deviation_of(std::span<const BoardView> views, const BundleState& state, double freedom) {
+  double sum = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (const BoardPoint& point : views[i].points)
+      sum += std::pow(whitened_residual(point, state, state.poses[i]), 2);
+  }
+  return std::sqrt(sum / freedom);
+}
+
 // Poses of all views under a camera; those that its lens can't explain, under none.
 BundleState with_poses(std::span<const BoardView> views, const CameraModel& camera) {
-  BundleState state{camera, {}, {}};
+  BundleState state{camera, {}, {}, kFirstFloorPx};
   CameraModel pinhole = camera;
   pinhole.distortion = {};
   for (const BoardView& view : views) {
@@ -141,6 +154,32 @@ double squares(const BoardView& view, const BundleState& state, const Pose& pose
   return sum;
 }
 
+// The adjustment without outliers, and what it says about the points' noise.
+struct Weighed {
+  BundleResult adjusted;  // its covariance is for `deviation`
+  double deviation = 1;   // of the whitened residuals
+};
+
+// What the points share beside their own noise is known only from what is left over: adjust, look,
+// weigh them anew. With wrong weights the stated deviations are wrong, and usually too small.
+Weighed adjust_weighed(std::span<const BoardView> views, BundleState state, BundleOptions bundle) {
+  constexpr int kRounds = 3;
+  const double values = 2 * static_cast<double>(count_points(views));
+  bundle.robust_scale = 0;
+  Weighed result;
+  for (int round = 0; round <= kRounds; ++round) {
+    result.adjusted = adjust(views, state, bundle);
+    const double freedom = std::max(1.0, values - result.adjusted.unknowns);
+    result.deviation = std::sqrt(2 * result.adjusted.data_cost / freedom);
+    const double scale = result.deviation / bundle.residual_sigma;
+    result.adjusted.covariance *= scale * scale;
+    state = result.adjusted.state;
+    state.floor_px = noise_floor(free_residuals(views, state, bundle));
+    bundle.residual_sigma = std::max(kLeastScale, deviation_of(views, state, freedom));
+  }
+  return result;
+}
+
 void tell_views(std::span<const BoardView> all, std::span<const BoardView> used,
                 const BundleState& state, IntrinsicCalibration& result) {
   double sum = 0;
@@ -187,17 +226,15 @@ IntrinsicCalibration calibrate_intrinsics(std::span<const BoardView> views, int 
   const std::vector<BoardView> used = without_outliers(all, state, kOutlier * deviation);
   require_agreement(used.size(), all.size());
 
-  bundle.robust_scale = 0;
-  BundleResult adjusted = adjust(used, state, bundle);
-  const double values = 2 * static_cast<double>(count_points(used));
-  const double freedom = std::max(1.0, values - adjusted.unknowns);
+  const Weighed weighed = adjust_weighed(used, state, bundle);
+  const BundleResult& adjusted = weighed.adjusted;
 
   IntrinsicCalibration result;
   result.camera = adjusted.state.camera;
   result.offsets = adjusted.state.offsets;
-  result.residual_sigma = std::sqrt(2 * adjusted.data_cost / freedom);
-  const double scale = result.residual_sigma / bundle.residual_sigma;
-  result.covariance = adjusted.covariance * scale * scale;
+  result.residual_sigma = weighed.deviation;
+  result.floor_px = weighed.deviation * adjusted.state.floor_px;
+  result.covariance = adjusted.covariance;
   tell_views(all, used, adjusted.state, result);
   for (const PlaceUncertainty& place : projection_uncertainty(result.camera, result.covariance))
     result.worst_px = std::max(result.worst_px, place.sigma_px);

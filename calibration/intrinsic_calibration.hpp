@@ -37,8 +37,9 @@ struct IntrinsicCalibration {
                                          // if the board is exact
   IntrinsicMatrix covariance = IntrinsicMatrix::Zero();
   double error_px = 0;  // root mean square over the points of all views: "total error"
-  double residual_sigma =
-      0;                // of the residuals, in the standard deviations that the points came with
+  // Of the residuals: their own noise as stated times residual_sigma, and beside it floor_px, which
+  // all points share.
+  double residual_sigma = 0, floor_px = 0;
   double worst_px = 0;  // one standard deviation of where the camera sees a point, at the worst
                         // place of the picture (projection_uncertainty.hpp)
   int points = 0, outliers = 0;

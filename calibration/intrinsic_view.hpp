@@ -10,7 +10,8 @@ struct BoardPoint {
   int id = 0;
   Eigen::Vector2d on_board = Eigen::Vector2d::Zero();  // metres, board frame
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  // pixels squared, positive definite
+  // By the picture's noise alone; pixels squared, positive definite.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
 };
 
 // What one picture of the board shows; every id at most once.

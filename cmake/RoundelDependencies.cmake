@@ -13,6 +13,7 @@ pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
 pkg_check_modules(V4L REQUIRED IMPORTED_TARGET libv4l2)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(MICROHTTPD REQUIRED IMPORTED_TARGET libmicrohttpd)
+pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 find_program(LCM_GEN lcm-gen REQUIRED)
 

@@ -36,7 +36,7 @@ struct FilesSettings {
 struct CameraSettings {
   std::string name = "camera";
   std::string calibration;          // path; empty: none (the simulator knows its own lens)
-  std::string response = "linear";  // ResponseCurve::named()
+  std::string response = "auto";    // or ResponseCurve::named()
 
   // Which camera; all empty: the first that can capture.
   std::string device;                               // node or link
@@ -68,6 +68,9 @@ struct ArenaSettings {
 struct ControlSettings {
   std::string socket = "/run/roundel/control.sock";  // empty: none
   std::string group = "roundel";                     // who may use it; empty: roundeld's own group
+  std::string web;    // ADDRESS:PORT that the same is served on over TCP; empty: none
+  std::string token;  // that web clients must have; empty: none
+  bool operator==(const ControlSettings&) const = default;
 };
 
 struct LcmSettings {

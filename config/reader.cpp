@@ -10,6 +10,7 @@
 #include "config/default_yaml.hpp"
 #include "config/fields.hpp"
 #include "config/suggestion.hpp"
+#include "config/web_address.hpp"
 
 namespace roundel {
 namespace {
@@ -172,9 +173,15 @@ class Reader {
                           "and camera.crop_height go together; accepted: both 0 (no crop), or both "
                           "more");
     }
-    if (const auto response = ResponseCurve::named(c.camera.response)) {
-      loaded_.values.detector.response = *response;
+    const auto web = parse_web_address(c.control.web);
+    if (web && !web->loopback && c.control.token.empty()) {
+      throw loaded_.error("control.web",
+                          fmt::format("{} can be reached by others; accepted: only together with a "
+                                      "control.token, or an address of this machine alone, as in "
+                                      "127.0.0.1:8080",
+                                      c.control.web));
     }
+    loaded_.values.detector.response = ResponseCurve::named(c.camera.response);
     return std::move(loaded_);
   }
 

@@ -6,6 +6,10 @@
 
 #include "config/reader.hpp"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
+class App;
+}
+
 namespace roundel {
 
 struct CommandLine {
@@ -14,9 +18,13 @@ struct CommandLine {
   Action action = Action::kRun;
   std::string config;                  // path; empty: the embedded default
   std::vector<std::string> overrides;  // "key.path=value"
+  bool lock_memory = false;
 
   LoadedConfiguration load() const;
 };
+
+// The options of roundeld; parsing fills in the command, which must live as long as the app.
+void add_options(CLI::App& app, CommandLine& command);
 
 // What is to be done, or the exit status where parsing already did it (--help, --version, usage
 // errors, which are told on standard error).

@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 #include <poll.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -11,19 +12,27 @@
 #include "config/fields.hpp"
 #include "daemon/log.hpp"
 #include "daemon/setup.hpp"
+#include "daemon/start_up_summary.hpp"
 #include "transport/lcm_url.hpp"
+#include "transport/route.hpp"
 
 namespace roundel {
 namespace {
 
 constexpr std::int64_t kStatusPeriodNs = 1'000'000'000;
+// A source may be late by so much on a busy machine.
+constexpr std::int64_t kGraceNs = 1'000'000'000;
 
 void copy(const LumaView& from, GreyImage& to) {
   to.resize(from.width, from.height);
   for (int v = 0; v < from.height; ++v) {
     std::uint8_t* const row =
         to.pixels.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(from.width);
-    for (int u = 0; u < from.width; ++u) row[u] = from.at(u, v);
+    if (from.pixel_stride == 1) {
+      std::copy_n(from.row(v), from.width, row);
+    } else {
+      for (int u = 0; u < from.width; ++u) row[u] = from.at(u, v);
+    }
   }
 }
 
@@ -58,8 +67,8 @@ void set_controls(const FrameSource& source, const Configuration& values) {
 
 }  // namespace
 
-Daemon::Daemon(Load load, SignalDescriptor& signals)
-    : load_(std::move(load)), signals_(signals), statistics_(now()) {
+Daemon::Daemon(Load load, SignalDescriptor& signals, std::unique_ptr<ServiceLink> service)
+    : load_(std::move(load)), signals_(signals), statistics_(now()), service_(std::move(service)) {
   Parts parts;
   parts.configuration = load_();
   parts.broadcast.emplace(make_broadcast(parts.configuration));
@@ -67,6 +76,7 @@ Daemon::Daemon(Load load, SignalDescriptor& signals)
   parts.camera = make_camera(parts.configuration, *parts.source);
   parts.tracker.emplace(make_tracker(parts.configuration, parts.camera));
   start(std::move(parts));
+  log_info("version {}, configuration: {}", ROUNDEL_VERSION, parts_.configuration.name);
   status_due_ns_ = monotonic_ns() + kStatusPeriodNs;
   status_timer_.arm(status_due_ns_);
 }
@@ -82,11 +92,15 @@ int Daemon::run() {
     if (wakeup.status && status_timer_.take()) publish_status();
     if (wakeup.command) control_.commands().run(*this);
     if (wakeup.frame && !carry_frame()) break;
+    tell_service_manager();
   }
+  service_.stopping();
   publish_status();
-  if (const std::string drops = parts_.source->explanation_of_drops(); !drops.empty()) {
-    log_info("{} frames tracked; {}", statistics_.frames(), drops);
-  }
+  const DropCounts drops = drops_of_session();
+  log_info(
+      "{} frames tracked; {} lost before they reached roundeld, {} left out for a newer one, {} "
+      "damaged, {} too old",
+      statistics_.frames(), drops.lost, drops.newer, drops.damaged, drops.stale);
   if (parts_.source->complete()) {
     log_info("ends");
     return 0;
@@ -100,7 +114,8 @@ Daemon::Wakeup Daemon::wait() {
                                         {status_timer_.descriptor(), POLLIN, 0},
                                         {control_.commands().descriptor(), POLLIN, 0},
                                         {parts_.source->descriptor(), POLLIN, 0}}};
-  if (::poll(descriptors.data(), descriptors.size(), -1) < 0 && errno != EINTR) {
+  const int sleep_ms = service_.sleep_ms(monotonic_ns());
+  if (::poll(descriptors.data(), descriptors.size(), sleep_ms) < 0 && errno != EINTR) {
     throw std::system_error(errno, std::generic_category(), "poll");
   }
   return {descriptors[0].revents != 0, descriptors[1].revents != 0, descriptors[2].revents != 0,
@@ -115,34 +130,38 @@ bool Daemon::carry_frame() {
   const CapturedFrame frame = lease->frame();
   FrameTimes times;
   times.captured_us = frame.captured.mono_us;
-  times.arrived_us = now().mono_us;
+  times.arrived_us = frame.arrived_us;
+  times.readable_us = now().mono_us;
 
   if (frame.luma.width != information_.width || frame.luma.height != information_.height) {
     fit_tracker(frame.luma.width, frame.luma.height);
   }
   const std::span<const Marker> markers = parts_.tracker->track(frame.luma);
-  FrameSnapshot& snapshot = control_.next_snapshot();
-  snapshot.has_picture = control_.wants_picture();
-  if (snapshot.has_picture) copy(frame.luma, snapshot.picture);
-  lease->give_back();
+  // Somebody who looks waits for the copy; robots don't.
+  const bool looked_at = control_.wants_picture();
+  if (!looked_at) lease->give_back();
   const std::span<const ArenaPose> arena = arena_.locate(markers);
   times.tracked_us = now().mono_us;
 
   information_.frame = frame.number;
-  information_.dropped = parts_.source->dropped() - dropped_before_session_;
+  information_.dropped = drops_of_session().total();
   information_.captured = frame.captured;
   information_.stamp_source = frame.stamp_source;
-  information_.tracking_us = static_cast<double>(times.tracked_us - times.arrived_us);
+  information_.tracking_us = static_cast<double>(times.tracked_us - times.readable_us);
   parts_.broadcast->publish(information_, markers, arena);
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
-  leave_snapshot(markers, arena);
+  leave_snapshot(markers, arena, looked_at ? &frame.luma : nullptr);
+  frame_carried_ = true;
   return true;
 }
 
 // For everything that happens beside the frames. Copies into memory that is kept.
-void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena) {
+void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
+                            const LumaView* picture) {
   FrameSnapshot& snapshot = control_.next_snapshot();
+  snapshot.has_picture = picture != nullptr;
+  if (snapshot.has_picture) copy(*picture, snapshot.picture);
   snapshot.information = information_;
   snapshot.markers.assign(markers.begin(), markers.end());
   snapshot.arena.assign(arena.begin(), arena.end());
@@ -161,6 +180,7 @@ void Daemon::take_state() {
     fit_arena();
   }
   if (information_.camera == CameraState::kLost || before == CameraState::kLost) publish_status();
+  report_state();
 }
 
 // A calibration holds for one resolution: frames of another one get no poses.
@@ -248,7 +268,12 @@ void Daemon::publish_status() {
   status_.session = information_.session;
   status_.utime = current.wall_us;
   status_.mono = current.mono_us;
-  status_.dropped = parts_.source->dropped() - dropped_before_session_;
+  const DropCounts drops = drops_of_session();
+  status_.dropped = drops.total();
+  status_.dropped_lost = drops.lost;
+  status_.dropped_newer = drops.newer;
+  status_.dropped_damaged = drops.damaged;
+  status_.dropped_stale = drops.stale;
   status_.unsent = parts_.broadcast->unsent_frames() - unsent_before_session_;
   const header_t header = to_message(information_);
   status_.width = header.width;
@@ -262,6 +287,7 @@ void Daemon::publish_status() {
   status_.simulated = header.simulated;
   parts_.broadcast->publish(status_);
   control_.offer(status_);
+  report_state();
 }
 
 // Takes parts that are ready to work. Does not fail.
@@ -282,33 +308,77 @@ void Daemon::start(Parts parts) {
   fit_arena();
   begin_session();
   control_.serve(parts_.configuration.values.control);
-  log_summary();
+  summary_due_ = true;
+}
+
+DropCounts Daemon::drops_of_session() const {
+  return parts_.source->drops() - drops_before_session_;
 }
 
 void Daemon::begin_session() {
   information_.session = std::max(now().wall_us, information_.session + 1);
-  dropped_before_session_ = parts_.source->dropped();
+  drops_before_session_ = parts_.source->drops();
   unsent_before_session_ = parts_.broadcast->unsent_frames();
   statistics_.begin_session();
 }
 
 void Daemon::log_summary() const {
-  const Configuration& c = parts_.configuration.values;
-  const std::string code =
-      c.detector.bits == 0 ? "without a code" : fmt::format("with {} bits", c.detector.bits);
-  log_info("version {}: {}; {}; markers of {} m {}; poses to {}_FRAME on {}", ROUNDEL_VERSION,
-           parts_.source->description(), parts_.camera ? "calibrated" : "not calibrated, no poses",
-           c.detector.diameter_m, code, c.lcm.channel, c.lcm.url);
-  const LcmUrl url = parse_lcm_url(c.lcm.url);
-  if (url.provider == LcmUrl::Provider::kUdpMulticast && url.ttl == 0) {
+  const Configuration& values = parts_.configuration.values;
+  const LcmUrl url = parse_lcm_url(values.lcm.url);
+  const bool multicast = url.provider == LcmUrl::Provider::kUdpMulticast;
+  StartUpFacts facts{values, information_, parts_.source->description()};
+  facts.arena = arena_calibration_.get();
+  if (multicast) facts.route = find_route(url.address, url.port);
+  struct stat lens {};
+  if (::stat(values.camera.calibration.c_str(), &lens) == 0) {
+    facts.lens_written_s = static_cast<double>(lens.st_mtim.tv_sec);
+  }
+  for (const std::string& line : start_up_summary(facts)) log_info("{}", line);
+  if (multicast && url.ttl == 0) {
     log_warning(
         "lcm.url has ttl=0: poses stay on this machine; ttl=1 lets them out to the local "
         "network");
   }
 }
 
-// A reload is whole or does not happen: what changed is made first, then taken.
+// Ready is who has published a frame, or knows what keeps it from doing so. A sign of life is a
+// frame, or a source that is not overdue: a loop that turns without either would not be fed.
+void Daemon::tell_service_manager() {
+  const bool carried = std::exchange(frame_carried_, false);
+  if (carried && std::exchange(summary_due_, false)) log_summary();
+  if (!service_.is_ready() && (carried || !parts_.source->waits_because().empty())) {
+    report_state();
+    service_.ready();
+  }
+  const std::int64_t now_ns = monotonic_ns();
+  if (carried || now_ns <= parts_.source->due_ns() + kGraceNs) service_.alive(now_ns);
+}
+
+void Daemon::report_state() {
+  ServiceStatus status;
+  status.camera = information_.camera;
+  status.calibration = information_.calibration;
+  status.arena = information_.arena;
+  status.frame_rate = service_rate_.steady(status_.frame_rate);
+  status.source = status_.source;
+  status.waits_because = parts_.source->waits_because();
+  status.network = parts_.broadcast->is_open();
+  status.url = status_.url;
+  status.reload_error = reload_error_;
+  write_status(status, service_text_);
+  service_.status({service_text_.data(), service_text_.size()});
+}
+
 std::string Daemon::reload() {
+  service_.begin_reload(now().mono_us);
+  reload_error_ = try_to_reload();
+  report_state();
+  service_.end_reload();
+  return reload_error_;
+}
+
+// A reload is whole or does not happen: what changed is made first, then taken.
+std::string Daemon::try_to_reload() {
   // True if a key of these sections changed.
   std::vector<std::string_view> changed;
   const auto touches = [&](std::initializer_list<std::string_view> sections) {
@@ -323,9 +393,13 @@ std::string Daemon::reload() {
     changed = changed_keys(parts_.configuration.values, next.configuration.values);
     const Configuration& values = next.configuration.values;
     // How robots wear their markers is another matter.
-    const bool other_markers = touches({"marker.diameter", "marker.bits", "marker.hamming"});
+    const bool other_markers =
+        touches({"marker.diameter", "marker.bits", "marker.hamming", "marker.inner_ratio"});
     const bool new_source = touches({"source"}) || touches(source_sections(values.source));
-    if (new_source) next.source = make_source(next.configuration);
+    if (new_source) {
+      next.source = make_source(next.configuration);
+      next.source->follow(*parts_.source);
+    }
     next.camera = make_camera(next.configuration, next.source ? *next.source : *parts_.source);
     const bool new_camera = !same_camera(next.camera, parts_.camera);
     const bool new_tracker = new_source || new_camera || other_markers || touches({"detector."});

@@ -12,6 +12,8 @@
 #include "daemon/control/control_center.hpp"
 #include "daemon/frame_source.hpp"
 #include "daemon/monotonic_timer.hpp"
+#include "daemon/service/service_report.hpp"
+#include "daemon/service/service_status.hpp"
 #include "daemon/signal_descriptor.hpp"
 #include "daemon/statistics.hpp"
 
@@ -25,7 +27,7 @@ class Daemon final : private LoopControl {
   using Load = std::function<LoadedConfiguration()>;
 
   // Sets everything up. Throws ConfigError, or std::runtime_error where a file is at fault.
-  Daemon(Load load, SignalDescriptor& signals);
+  Daemon(Load load, SignalDescriptor& signals, std::unique_ptr<ServiceLink> service);
 
   // Returns the exit status: 0, or 1 if parts of a recording could not be read.
   int run();
@@ -42,11 +44,13 @@ class Daemon final : private LoopControl {
 
   void start(Parts parts);
   std::string reload() override;
+  std::string try_to_reload();
   void set_arena(std::shared_ptr<const ArenaCalibration> calibration) override;
   void set_arena_moved(bool moved) override;
   std::shared_ptr<CameraControls> camera_controls() override;
   void begin_session();
   void log_summary() const;
+  void report_state();
 
   struct Wakeup {
     bool signal = false, status = false, command = false, frame = false;
@@ -57,8 +61,11 @@ class Daemon final : private LoopControl {
   void fit_tracker(int width, int height);
   void load_arena_file();
   void fit_arena();
-  void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena);
+  void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
+                      const LumaView* picture);
   void publish_status();
+  DropCounts drops_of_session() const;
+  void tell_service_manager();
 
   Load load_;
   SignalDescriptor& signals_;
@@ -68,9 +75,16 @@ class Daemon final : private LoopControl {
   Statistics statistics_;
   FrameInformation information_;  // of the last frame; the states hold in between
   status_t status_{};             // reused, so that its texts are not copied every second
-  std::int64_t dropped_before_session_ = 0;
+  DropCounts drops_before_session_;
   std::int64_t unsent_before_session_ = 0;
   bool told_of_other_resolution_ = false;
+  bool summary_due_ = false;
+  bool frame_carried_ = false;  // since the service manager was told
+
+  ServiceReport service_;
+  SteadyRate service_rate_;
+  fmt::memory_buffer service_text_;
+  std::string reload_error_;  // of the last reload
 
   std::string arena_file_;  // that was read
   std::string arena_file_problem_;

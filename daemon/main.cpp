@@ -7,7 +7,9 @@
 #include "config/default_yaml.hpp"
 #include "daemon/command_line.hpp"
 #include "daemon/daemon.hpp"
+#include "daemon/lock_memory.hpp"
 #include "daemon/log.hpp"
+#include "daemon/service/service_link.hpp"
 #include "daemon/setup.hpp"
 
 namespace {
@@ -35,7 +37,8 @@ int run(const roundel::CommandLine& command) {
   }
   ::signal(SIGPIPE, SIG_IGN);  // a closed log must not end it
   roundel::SignalDescriptor signals;
-  return roundel::Daemon([&] { return command.load(); }, signals).run();
+  if (command.lock_memory) roundel::lock_memory();
+  return roundel::Daemon([&] { return command.load(); }, signals, roundel::service_manager()).run();
 }
 
 }  // namespace

@@ -11,10 +11,11 @@ namespace roundel {
 
 SimulatorSource::SimulatorSource(const ArenaOptions& options) : arena_(options) {
   arena_.render(0, image_);  // the first picture takes longer; nobody waits for it yet
-  timer_.arm(monotonic_ns());
+  start_ns_ = monotonic_ns();
+  timer_.arm(start_ns_);
 }
 
-std::int64_t SimulatorSource::due_ns(std::int64_t frame) const {
+std::int64_t SimulatorSource::instant_ns(std::int64_t frame) const {
   const double period_ns = 1e9 / arena_.options().frame_rate;
   return start_ns_ + std::llround(period_ns * static_cast<double>(frame));
 }
@@ -25,9 +26,9 @@ std::optional<FrameLease> SimulatorSource::next() {
   const double elapsed_s = static_cast<double>(monotonic_ns() - start_ns_) / 1e9;
   const auto newest = static_cast<std::int64_t>(elapsed_s * arena_.options().frame_rate);
   const std::int64_t number = std::max(newest, last_frame_ + 1);
-  dropped_ += number - last_frame_ - 1;
+  left_out_ += number - last_frame_ - 1;
   last_frame_ = number;
-  timer_.arm(due_ns(number + 1));
+  timer_.arm(instant_ns(number + 1));
 
   arena_.render(number, image_);
   state_ = CameraState::kStreaming;
@@ -35,9 +36,10 @@ std::optional<FrameLease> SimulatorSource::next() {
   // The frame shows the arena at the instant at which it was due.
   constexpr std::int64_t kNsPerUs = 1000;
   const TimeStamp current = now();
-  const std::int64_t captured_us = due_ns(number) / kNsPerUs;
+  const std::int64_t captured_us = instant_ns(number) / kNsPerUs;
   const TimeStamp captured = {current.wall_us - (current.mono_us - captured_us), captured_us};
-  return FrameLease(*this, 0, {image_.view(), number, captured, StampSource::kMiddleOfExposure});
+  return FrameLease(
+      *this, 0, {image_.view(), number, captured, StampSource::kMiddleOfExposure, current.mono_us});
 }
 
 std::string SimulatorSource::description() const {

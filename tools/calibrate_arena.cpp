@@ -151,7 +151,9 @@ void add_calibrate_arena(CLI::App& calibrate) {
                    "Standard deviation on the floor to be reached, millimetres")
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
-  command->add_option("--time-limit", options->time_limit, "Seconds")
+  command
+      ->add_option("--time-limit", options->time_limit,
+                   "Seconds, from the first frame on; so long does it wait for that, too")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance_mm,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/atomic_file.hpp"
 #include "calibration/board.hpp"
 #include "calibration/camera_file.hpp"
 #include "calibration/view_advice.hpp"
@@ -16,14 +17,17 @@
 #include "tools/calibrate.hpp"
 #include "tools/camera_report.hpp"
 #include "tools/commands.hpp"
+#include "tools/control_client.hpp"
 #include "tools/frame_input.hpp"
+#include "tools/live_views.hpp"
 #include "tools/standard_output.hpp"
 
 namespace roundel {
 namespace {
 
 struct CalibrateCameraOptions {
-  std::vector<std::string> files;
+  std::vector<std::string> files;  // none: live
+  LiveOptions live{kDefaultControlSocket, 600, false};
   Board board;
   bool no_k3 = false, exact_board = false;
   std::string output, name = "camera";
@@ -83,7 +87,12 @@ std::string today() {
 void calibrate_camera(const CalibrateCameraOptions& options) {
   CameraReport report;
   report.board = checked_board(options.board);
-  const ViewCollector collector = collect(options.files, report);
+  LiveOptions live = options.live;
+  live.quiet = options.json;
+  // Better now than after ten minutes in front of the camera.
+  if (!options.output.empty()) require_writable(options.output);
+  const ViewCollector collector =
+      options.files.empty() ? collect_live(report.board, live) : collect(options.files, report);
   require_board(collector.tally(), report.board);
   std::vector<LumaView> pictures;
   std::vector<BoardView> views;
@@ -92,8 +101,9 @@ void calibrate_camera(const CalibrateCameraOptions& options) {
     views.push_back(view.sighting.view);
     report.sources.push_back(view.name);
   }
-  require_views(views, static_cast<std::size_t>(collector.tally().pictures), collector.width(),
-                collector.height());
+  const auto shown =
+      options.files.empty() ? views.size() : static_cast<std::size_t>(collector.tally().pictures);
+  require_views(views, shown, collector.width(), collector.height());
   IntrinsicOptions intrinsic;
   intrinsic.estimate_k3 = !options.no_k3;
   intrinsic.exact_board = options.exact_board;
@@ -118,13 +128,22 @@ void calibrate_camera(const CalibrateCameraOptions& options) {
 
 void add_calibrate_camera(CLI::App& calibrate) {
   auto* command = calibrate.add_subcommand(
-      "camera", "Intrinsics from pictures of the board that roundel markers --board prints");
+      "camera",
+      "Intrinsics from pictures of the board that roundel markers --board prints, live "
+      "from a running roundeld or from files");
   auto options = std::make_shared<CalibrateCameraOptions>();
+  auto* const files = command->add_option(
+      "FILE", options->files,
+      "Some 15 pictures of the board (PNG, JPEG, PGM), or .y4m videos (- for standard input), out "
+      "of which the best views are chosen; none: what the camera of a running roundeld sees");
+  add_socket_option(*command, options->live.socket)->excludes(files);
   command
-      ->add_option("FILE", options->files,
-                   "Some 15 pictures of the board (PNG, JPEG, PGM), or .y4m videos (- for standard "
-                   "input), out of which the best views are chosen")
-      ->required();
+      ->add_option("--time-limit", options->live.time_limit_s,
+                   "Seconds that views are collected from roundeld for, if nothing is missing "
+                   "sooner")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str()
+      ->excludes(files);
   command
       ->add_option("-o,--output", options->output,
                    "Writes the camera file (ROS camera_info YAML), which --camera reads")

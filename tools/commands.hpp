@@ -25,4 +25,7 @@ void add_snapshot(CLI::App& app);
 void add_controls(CLI::App& app);
 void add_cameras(CLI::App& app);
 
+// All of them, in the order in which they are listed.
+void add_commands(CLI::App& app);
+
 }  // namespace roundel

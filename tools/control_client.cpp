@@ -45,8 +45,8 @@ std::string error_in(const std::string& body, long status) {
 
 }  // namespace
 
-void add_socket_option(CLI::App& command, std::string& socket) {
-  command.add_option("--socket", socket, "Control socket of roundeld (control.socket)")
+CLI::Option* add_socket_option(CLI::App& command, std::string& socket) {
+  return command.add_option("--socket", socket, "Control socket of roundeld (control.socket)")
       ->type_name("PATH")
       ->capture_default_str();
 }
@@ -73,17 +73,18 @@ std::string ControlClient::request(const std::string& method, const std::string&
   if (code != CURLE_OK) {
     long reason = 0;
     curl_easy_getinfo(curl.get(), CURLINFO_OS_ERRNO, &reason);
-    throw std::runtime_error(fmt::format(
-        "roundeld can't be reached at {}: {}; is it running, with this control.socket, and are you "
-        "a member of its group?",
-        socket_,
-        code == CURLE_COULDNT_CONNECT && reason != 0 ? std::strerror(static_cast<int>(reason))
-                                                     : curl_easy_strerror(code)));
+    throw ControlError(0, fmt::format("roundeld can't be reached at {}: {}; is it running, with "
+                                      "this control.socket, and are you "
+                                      "a member of its group?",
+                                      socket_,
+                                      code == CURLE_COULDNT_CONNECT && reason != 0
+                                          ? std::strerror(static_cast<int>(reason))
+                                          : curl_easy_strerror(code)));
   }
   long status = 0;
   curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
   constexpr long kFirstError = 400;
-  if (status >= kFirstError) throw std::runtime_error(error_in(answer, status));
+  if (status >= kFirstError) throw ControlError(status, error_in(answer, status));
   return answer;
 }
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 
 namespace roundel {
@@ -9,10 +10,20 @@ namespace roundel {
 inline constexpr const char* kDefaultControlSocket = "/run/roundel/control.sock";
 
 // Adds --socket.
-void add_socket_option(CLI::App& command, std::string& socket);
+CLI::Option* add_socket_option(CLI::App& command, std::string& socket);
 
-// Talks to a running roundeld over its control socket. All calls throw std::runtime_error with a
-// sentence for the user: roundeld can't be reached, or what it answered.
+// A request that roundeld refused, or could not be asked.
+class ControlError : public std::runtime_error {
+ public:
+  ControlError(long status, const std::string& what) : std::runtime_error(what), status_(status) {}
+  long status() const { return status_; }  // of HTTP; 0: roundeld can't be reached
+
+ private:
+  long status_;
+};
+
+// Talks to a running roundeld over its control socket. All calls throw ControlError (or
+// std::runtime_error, if the answer makes no sense) with a sentence for the user.
 class ControlClient {
  public:
   explicit ControlClient(std::string socket) : socket_(std::move(socket)) {}

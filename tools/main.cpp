@@ -43,19 +43,7 @@ int fail(const CLI::App& app, std::string message, ExitStatus status) {
 
 int run(int argc, char** argv) {
   CLI::App app("Motion capture of circular markers with one camera.", "roundel");
-  app.require_subcommand(1);
-  roundel::add_detect(app);
-  roundel::add_track(app);
-  roundel::add_simulate(app);
-  roundel::add_compare(app);
-  roundel::add_markers(app);
-  roundel::add_calibrate(app);
-  roundel::add_listen(app);
-  roundel::add_status(app);
-  roundel::add_reload(app);
-  roundel::add_snapshot(app);
-  roundel::add_controls(app);
-  roundel::add_cameras(app);
+  roundel::add_commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <limits>
 #include <stdexcept>
 
 namespace roundel {
@@ -22,7 +23,11 @@ bool is_channel_prefix(const std::string& prefix) {
          std::all_of(prefix.begin(), prefix.end(), is_allowed);
 }
 
+// liblcm 1.3 passes packets on that end before their message begins, with a negative size (which is
+// unsigned here).
 Bytes bytes_of(const lcm_recv_buf_t* buffer) {
+  constexpr std::uint32_t kLargest = std::numeric_limits<std::int32_t>::max();
+  if (buffer->data_size > kLargest) return {};
   return {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
 }
 

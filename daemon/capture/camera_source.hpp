@@ -11,7 +11,6 @@
 #include "daemon/capture/camera_mode.hpp"
 #include "daemon/capture/capture_stream.hpp"
 #include "daemon/capture/device_watch.hpp"
-#include "daemon/capture/drop_counts.hpp"
 #include "daemon/capture/frame_clock.hpp"
 #include "daemon/frame_source.hpp"
 #include "daemon/monotonic_timer.hpp"
@@ -37,9 +36,12 @@ class CameraSource final : public FrameSource {
 
   int descriptor() const override { return poll_.get(); }
   std::optional<FrameLease> next() override;
+  std::int64_t due_ns() const override {
+    return camera_ ? camera_->last_frame_ns + patience_ns() : retry_ns_;
+  }
   CameraState state() const override { return state_; }
-  std::int64_t dropped() const override { return counts_.total(); }
-  std::string explanation_of_drops() const override;
+  std::string_view waits_because() const override { return reason_; }
+  DropCounts drops() const override { return counts_; }
   int width() const override { return camera_ ? camera_->reader.width() : 0; }
   int height() const override { return camera_ ? camera_->reader.height() : 0; }
   bool simulated() const override { return false; }
@@ -48,8 +50,9 @@ class CameraSource final : public FrameSource {
   std::string identity() const override;
   std::string crop() const override;
   std::shared_ptr<CameraControls> controls() const override { return controls_; }
-
-  const DropCounts& drop_counts() const { return counts_; }
+  // Chosen by the same rules, it is the same camera; controls that were set while it ran stay set
+  // as long as the configuration's are the same.
+  void follow(const FrameSource& before) override;
 
  private:
   // Everything that is thrown away with a lost camera; what is set up later goes first.
@@ -62,6 +65,7 @@ class CameraSource final : public FrameSource {
     FrameClock clock;
     std::optional<std::uint32_t> sequence;  // of the last buffer
     std::int64_t last_frame_ns = 0;         // or of the start of the stream
+    std::int64_t damaged = 0;               // frames since then
     bool any_frame = false;
   };
 
@@ -71,6 +75,7 @@ class CameraSource final : public FrameSource {
   void watch_stream();
   void note_failure(const CameraError& error);
   void lose(const std::string& reason);
+  void retry_at(std::int64_t instant_ns);
   void schedule_retry();
   bool format_changed();
   void check_silence();
@@ -91,7 +96,9 @@ class CameraSource final : public FrameSource {
   std::optional<OpenCamera> camera_;
   std::optional<CameraInformation> before_;  // the camera that gave the last frame
   CameraState state_ = CameraState::kStarting;
+  std::int64_t retry_ns_ = 0;  // without a camera: of the next try
   std::int64_t pause_ns_ = 0;
+  std::string reason_;         // of the last failure; empty after a frame
   std::string told_;           // the last reason in the log; empty after a frame
   bool told_in_vain_ = false;  // that the camera is there, but can't be used
   std::vector<std::string> told_remarks_;

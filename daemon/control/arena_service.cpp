@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <utility>
 
 #include "calibration/arena_file.hpp"
 #include "daemon/log.hpp"
@@ -15,6 +16,9 @@ namespace {
 constexpr std::int64_t kJudgePeriodUs = 250'000;
 constexpr std::int64_t kRetryUs = 60'000'000;
 constexpr std::int64_t kApplyingUs = 3'000'000;  // without a frame
+constexpr const char* kNoFrame = "no frame has come from the camera yet";
+constexpr const char* kNoIntrinsics =
+    "the camera is not calibrated: without its intrinsics (camera.calibration) there is no arena";
 
 std::string utc_date() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
@@ -23,33 +27,50 @@ std::string utc_date() {
 }  // namespace
 
 void ArenaService::require_context() const {
-  if (!context_) throw std::runtime_error("no frame has come from the camera yet");
+  if (!context_) throw std::runtime_error(kNoFrame);
 }
 
 void ArenaService::start(const ArenaRequest& request) {
+  check(request);
   const std::lock_guard lock(mutex_);
-  require_context();
-  if (calibrator_ || applying_) throw std::runtime_error("a calibration is running already");
-  if (!context_->camera) {
-    throw std::runtime_error(
-        "the camera is not calibrated: without its intrinsics (camera.calibration) there is no "
-        "arena");
+  if (waiting_ || calibrator_ || applying_) {
+    throw std::runtime_error("a calibration is running already");
   }
-  begin(request, now().mono_us);
+  if (context_ && !context_->camera) throw std::runtime_error(kNoIntrinsics);
+  if (context_) {
+    begin(request, now().mono_us);
+  } else {
+    waiting_ = request;
+    show_running("waiting for the first frame", now().mono_us);
+  }
+}
+
+void ArenaService::show_running(const char* text, std::int64_t now_us) {
+  started_us_ = judged_us_ = now_us;
+  progress_ = {};
+  progress_.state = CalibrationProgress::State::kRunning;
+  progress_.text = text;
 }
 
 void ArenaService::begin(const ArenaRequest& request, std::int64_t now_us) {
   calibrator_.emplace(request, context_->arena_camera, context_->diameter_m);
   file_ = context_->arena_file;
-  started_us_ = judged_us_ = now_us;
-  progress_ = {};
-  progress_.state = CalibrationProgress::State::kRunning;
-  progress_.text = "waiting for frames";
+  show_running("waiting for frames", now_us);
+}
+
+// The first frame has come.
+void ArenaService::begin_waiting() {
+  const ArenaRequest request = *std::exchange(waiting_, std::nullopt);
+  if (context_->camera) {
+    begin(request, now().mono_us);
+  } else {
+    end(CalibrationProgress::State::kFailed, kNoIntrinsics);
+  }
 }
 
 void ArenaService::cancel() {
   const std::lock_guard lock(mutex_);
-  if (calibrator_) end(CalibrationProgress::State::kFailed, "it was cancelled");
+  if (waiting_ || calibrator_) end(CalibrationProgress::State::kFailed, "it was cancelled");
 }
 
 ArenaCalibration ArenaService::restore() {
@@ -88,6 +109,7 @@ void ArenaService::on_frame(const FrameSnapshot& frame) {
     end(CalibrationProgress::State::kFailed, "the camera has changed meanwhile");
   }
   context_ = frame.context;
+  if (waiting_) begin_waiting();
   if (applying_ && context_->calibration == applying_) {
     end(CalibrationProgress::State::kDone, "calibrated");
   }
@@ -104,18 +126,25 @@ void ArenaService::on_tick(std::int64_t now_us) {
 }
 
 void ArenaService::advance(std::int64_t now_us) {
-  if (!calibrator_ || now_us - judged_us_ < kJudgePeriodUs) return;
+  if ((!waiting_ && !calibrator_) || now_us - judged_us_ < kJudgePeriodUs) return;
   judged_us_ = now_us;
+  progress_.elapsed_s = static_cast<double>(now_us - started_us_) / 1e6;
+  if (waiting_) {
+    if (progress_.elapsed_s >= waiting_->time_limit_s) {
+      end(CalibrationProgress::State::kFailed, kNoFrame);
+    }
+    return;
+  }
   const ArenaCalibrator::Progress reached = calibrator_->progress();
   progress_.frames = reached.frames;
   progress_.markers = reached.markers;
   progress_.certainty_m = reached.certainty_m;
   progress_.text = reached.text;
-  progress_.elapsed_s = static_cast<double>(now_us - started_us_) / 1e6;
   if (reached.done || progress_.elapsed_s >= calibrator_->request().time_limit_s) finish();
 }
 
 void ArenaService::end(CalibrationProgress::State state, std::string text) {
+  waiting_.reset();
   calibrator_.reset();
   applying_.reset();
   progress_.state = state;

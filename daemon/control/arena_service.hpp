@@ -31,7 +31,8 @@ class ArenaService {
   explicit ArenaService(LoopCommands& loop) : loop_(loop) {}
 
   // From any thread. They throw std::runtime_error with a sentence for the user; start() throws
-  // std::invalid_argument for a request that makes no sense.
+  // std::invalid_argument for a request that makes no sense. Started before the first frame, it
+  // waits for that, for as long as the time limit says, and then has that long once more.
   void start(const ArenaRequest& request);
   void cancel();
   ArenaCalibration restore();
@@ -47,7 +48,9 @@ class ArenaService {
 
  private:
   void require_context() const;
+  void show_running(const char* text, std::int64_t now_us);
   void begin(const ArenaRequest& request, std::int64_t now_us);
+  void begin_waiting();
   void advance(std::int64_t now_us);
   void end(CalibrationProgress::State state, std::string text);
   void finish();
@@ -57,6 +60,7 @@ class ArenaService {
   LoopCommands& loop_;
   mutable std::mutex mutex_;
   std::shared_ptr<const TrackingContext> context_;  // of the last frame
+  std::optional<ArenaRequest> waiting_;             // for the first frame
   std::optional<ArenaCalibrator> calibrator_;       // while one runs
   std::string file_;                                // that it will be written to
   std::int64_t started_us_ = 0, judged_us_ = 0;

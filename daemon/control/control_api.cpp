@@ -9,6 +9,7 @@
 #include "daemon/control/controls_json.hpp"
 #include "daemon/control/snapshot_picture.hpp"
 #include "daemon/control/state_json.hpp"
+#include "daemon/control/web_page.hpp"
 
 namespace roundel {
 namespace {
@@ -39,6 +40,12 @@ HttpResponse error_answer(int status, const std::string& what) {
   return json_answer(status, {{"error", what}});
 }
 
+std::pair<PictureFormat, const char*> picture_kind(const std::string& path) {
+  if (path.ends_with(".png")) return {PictureFormat::kPng, "image/png"};
+  if (path.ends_with(".pgm")) return {PictureFormat::kPgm, "image/x-portable-graymap"};
+  return {PictureFormat::kJpeg, "image/jpeg"};
+}
+
 // Runs something on the frame loop's thread and waits for what it returns.
 template <typename Call>
 auto on_loop(LoopCommands& loop, Call call) -> decltype(call(std::declval<LoopControl&>())) {
@@ -65,11 +72,13 @@ struct ControlApi::Route {
 
 std::span<const ControlApi::Route> ControlApi::routes() {
   static constexpr std::array kRoutes = {
+      Route{"/", "GET", &ControlApi::page},
       Route{"/v1/status", "GET", &ControlApi::status},
       Route{"/v1/markers", "GET", &ControlApi::markers},
       Route{"/v1/events", "GET", &ControlApi::events},
       Route{"/v1/frame.jpg", "GET", &ControlApi::picture},
       Route{"/v1/frame.png", "GET", &ControlApi::picture},
+      Route{"/v1/frame.pgm", "GET", &ControlApi::picture},
       Route{"/v1/controls", "GET", &ControlApi::controls},
       Route{"/v1/controls", "PUT", &ControlApi::set_controls},
       Route{"/v1/calibration", "GET", &ControlApi::calibration},
@@ -103,6 +112,10 @@ HttpResponse ControlApi::handle(const HttpRequest& request) {
   return response;
 }
 
+HttpResponse ControlApi::page(const HttpRequest& /*request*/) {
+  return web_page();
+}
+
 HttpResponse ControlApi::status(const HttpRequest& /*request*/) {
   const auto frame = view_.frame();
   status_t status = view_.status();
@@ -125,13 +138,14 @@ HttpResponse ControlApi::events(const HttpRequest& /*request*/) {
 }
 
 HttpResponse ControlApi::picture(const HttpRequest& request) {
-  const auto frame = view_.next_picture(kPicturePatience);
+  // A camera that is gone keeps nobody waiting: meanwhile no other client would be served.
+  const bool gone = view_.status().camera_state == header_t::CAMERA_LOST;
+  const auto frame = gone ? nullptr : view_.next_picture(kPicturePatience);
   if (!frame) return error_answer(kUnavailable, "no frame comes from the camera");
-  const bool png = request.path.ends_with(".png");
   HttpResponse response;
-  response.type = png ? "image/png" : "image/jpeg";
-  response.body = encode_picture(*frame, png ? PictureFormat::kPng : PictureFormat::kJpeg,
-                                 !request.plain_picture);
+  const auto [format, type] = picture_kind(request.path);
+  response.type = type;
+  response.body = encode_picture(*frame, format, !request.plain_picture);
   return response;
 }
 

@@ -18,6 +18,7 @@ class ControlApi {
   HttpResponse handle(const HttpRequest& request);
 
  private:
+  HttpResponse page(const HttpRequest& request);
   HttpResponse status(const HttpRequest& request);
   HttpResponse markers(const HttpRequest& request);
   HttpResponse events(const HttpRequest& request);

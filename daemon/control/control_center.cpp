@@ -4,8 +4,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "config/web_address.hpp"
 #include "daemon/control/state_json.hpp"
+#include "daemon/control/web_gate.hpp"
+#include "daemon/control/web_socket.hpp"
 #include "daemon/json_frame.hpp"
 #include "daemon/log.hpp"
 #include "transport/clock.hpp"
@@ -68,12 +72,13 @@ void ControlCenter::run() {
     take_news();
     const std::int64_t now_us = now().mono_us;
     arena_.on_tick(now_us);
-    open_server();
-    if (server_ && now_us >= overdue_us) {
-      server_->end_overdue();
+    open_servers();
+    if (now_us >= overdue_us) {
+      each_server([](HttpServer& server) { server.end_overdue(); });
       overdue_us = now_us + kOverduePeriodUs;
     }
   }
+  web_server_.reset();
   server_.reset();
   socket_.reset();
 }
@@ -91,14 +96,16 @@ void ControlCenter::take_news() {
   // Slots keep the memory of old pictures.
   if (frame->has_picture) shown->picture = frame->picture;
   arena_.on_frame(*shown);
-  if (server_ && server_->has_event_streams()) {
+  bool streams = false;
+  each_server([&](const HttpServer& server) { streams |= server.has_event_streams(); });
+  if (streams) {
     auto text = std::make_shared<const std::string>(
         "event: frame\ndata: " + json_line(markers_json(*shown)) + "\n");
     const std::lock_guard lock(mutex_);
     event_ = {++frames_seen_, std::move(text)};
   }
   view_.show(std::move(shown));
-  if (server_) server_->wake_event_streams();
+  each_server([](HttpServer& server) { server.wake_event_streams(); });
 }
 
 HttpEvent ControlCenter::newest_event() {
@@ -106,14 +113,19 @@ HttpEvent ControlCenter::newest_event() {
   return event_;
 }
 
-void ControlCenter::open_server() {
+void ControlCenter::open_servers() {
   std::optional<ControlSettings> wanted;
   {
     const std::lock_guard lock(mutex_);
     wanted.swap(wanted_);
   }
-  if (!wanted || (wanted->socket == served_.socket && wanted->group == served_.group)) return;
-  served_ = *wanted;
+  if (!wanted) return;
+  const ControlSettings before = std::exchange(served_, *wanted);
+  if (served_.socket != before.socket || served_.group != before.group) open_server();
+  if (served_.web != before.web || served_.token != before.token) open_web_server();
+}
+
+void ControlCenter::open_server() {
   server_.reset();
   socket_.reset();
   if (served_.socket.empty()) return;
@@ -130,6 +142,26 @@ void ControlCenter::open_server() {
     socket_.reset();
     log_warning("control.socket: {}; roundel status and the like can't reach this roundeld",
                 error.what());
+  }
+}
+
+void ControlCenter::open_web_server() {
+  web_server_.reset();
+  const auto address = parse_web_address(served_.web);
+  if (!address) return;
+  try {
+    WebSocket socket = listen_for_web(*address);
+    const WebGate gate([this](const HttpRequest& request) { return api_.handle(request); },
+                       served_.token);
+    HttpLimits limits;
+    limits.connections = 64;
+    web_server_.emplace(
+        std::move(socket.descriptor),
+        [gate](const HttpRequest& request) { return gate.handle(request); },
+        [this] { return newest_event(); }, limits);
+    log_info("web page: {}{}", socket.url, served_.token.empty() ? "" : "?token=...");
+  } catch (const std::runtime_error& error) {
+    log_warning("control.web: {}; there is no web page", error.what());
   }
 }
 

@@ -42,13 +42,20 @@ class ControlCenter {
 
   void offer(const status_t& status);
 
-  // Serves on this socket from now on. What goes wrong is told in the log.
+  // Serves on this socket, and for browsers, from now on. What goes wrong is told in the log.
   void serve(const ControlSettings& settings);
 
  private:
   void run();
   void take_news();
+  void open_servers();
   void open_server();
+  void open_web_server();
+  template <typename Call>
+  void each_server(Call call) {
+    if (server_) call(*server_);
+    if (web_server_) call(*web_server_);
+  }
   HttpEvent newest_event();
 
   Wakeup news_;
@@ -66,9 +73,9 @@ class ControlCenter {
 
   // Of the thread.
   std::uint64_t frames_seen_ = 0;
-  ControlSettings served_{"", ""};
+  ControlSettings served_{"", "", "", ""};
   std::optional<ControlSocket> socket_;
-  std::optional<HttpServer> server_;
+  std::optional<HttpServer> server_, web_server_;
   std::thread thread_;
 };
 

@@ -31,6 +31,12 @@ UniqueFd unix_socket() {
   return UniqueFd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
+// As a service does from the start, which may not change owners.
+bool belongs_to(const std::string& path, gid_t group) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && status.st_gid == group;
+}
+
 void make_room(const std::string& path, const sockaddr_un& address) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return;
@@ -60,7 +66,8 @@ ControlSocket::ControlSocket(const std::string& path, const std::string& group)
     const ::group* const entry = ::getgrnam(group.c_str());
     if (entry == nullptr) {
       remark_ = fmt::format("there is no group {}: only this user's own group may use it", group);
-    } else if (::chown(path.c_str(), static_cast<uid_t>(-1), entry->gr_gid) != 0) {
+    } else if (!belongs_to(path, entry->gr_gid) &&
+               ::chown(path.c_str(), static_cast<uid_t>(-1), entry->gr_gid) != 0) {
       remark_ = fmt::format("it can't be given to group {}: {}", group, std::strerror(errno));
     }
   }

@@ -14,6 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Bytes; all connections together may well wait for one of these.
+constexpr std::size_t kSmallAnswer = std::size_t{64} << 10;
+
 // A request while it arrives.
 struct Arriving {
   HttpRequest request;
@@ -38,11 +41,18 @@ struct HttpServer::Impl {
     std::size_t sent = 0;
   };
 
+  // An answer until its client has taken it.
+  struct Body {
+    Impl* server = nullptr;
+    std::string text;
+  };
+
   HttpHandler handler;
   HttpEvents events;
   HttpLimits limits;
   std::atomic<bool> stopping{false};
   std::atomic<unsigned> streams{0};
+  std::atomic<std::size_t> untaken{0};
 
   std::mutex mutex;  // of the two below
   std::unordered_map<MHD_Connection*, ConnectionState> connections;
@@ -52,7 +62,7 @@ struct HttpServer::Impl {
 
   MHD_Result handle(MHD_Connection* connection, const char* url, const char* method,
                     const char* upload, std::size_t* upload_size, void** state);
-  MHD_Result answer(MHD_Connection* connection, const HttpResponse& response);
+  MHD_Result answer(MHD_Connection* connection, HttpResponse response);
   MHD_Result stream_events(MHD_Connection* connection);
   void note(MHD_Connection* connection, MHD_ConnectionNotificationCode code);
 };
@@ -71,9 +81,16 @@ MHD_Result HttpServer::Impl::handle(MHD_Connection* connection, const char* url,
     auto arriving = std::make_unique<Arriving>();
     arriving->request.method = method;
     arriving->request.path = url;
-    const char* const overlay =
-        MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "overlay");
-    arriving->request.plain_picture = overlay != nullptr && std::string(overlay) == "0";
+    const auto value = [connection](MHD_ValueKind kind, const char* name) {
+      const char* const text = MHD_lookup_connection_value(connection, kind, name);
+      return std::string(text == nullptr ? "" : text);
+    };
+    arriving->request.plain_picture = value(MHD_GET_ARGUMENT_KIND, "overlay") == "0";
+    arriving->request.token = value(MHD_GET_ARGUMENT_KIND, "token");
+    arriving->request.host = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
+    arriving->request.origin = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
+    arriving->request.authorization = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_AUTHORIZATION);
+    arriving->request.cookie = value(MHD_COOKIE_KIND, kTokenCookie);
     const char* const length =
         MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
     // Refused before it is sent; the connection ends with the answer.
@@ -93,16 +110,27 @@ MHD_Result HttpServer::Impl::handle(MHD_Connection* connection, const char* url,
   return answer(connection, handler(arriving.request));
 }
 
-MHD_Result HttpServer::Impl::answer(MHD_Connection* connection, const HttpResponse& response) {
+MHD_Result HttpServer::Impl::answer(MHD_Connection* connection, HttpResponse response) {
   if (response.event_stream) return stream_events(connection);
-  // libmicrohttpd copies the body; it does not change it.
-  MHD_Response* const made = MHD_create_response_from_buffer(
-      response.body.size(),
-      const_cast<char*>(response.body.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-      MHD_RESPMEM_MUST_COPY);
+  const std::size_t before = untaken, size = response.body.size();
+  if (size > kSmallAnswer && before > 0 && before + size > limits.untaken) {
+    response = error_response(503, "too many clients have not taken their answers");
+  }
+  auto body = std::make_unique<Body>(Body{this, std::move(response.body)});
+  const auto free = [](void* self) {
+    const std::unique_ptr<Body> taken(static_cast<Body*>(self));
+    taken->server->untaken -= taken->text.size();
+  };
+  MHD_Response* const made = MHD_create_response_from_buffer_with_free_callback_cls(
+      body->text.size(), body->text.data(), free, body.get());
   if (made == nullptr) return MHD_NO;
+  untaken += body->text.size();
+  [[maybe_unused]] const Body* const owned = body.release();
   MHD_add_response_header(made, MHD_HTTP_HEADER_CONTENT_TYPE, response.type.c_str());
   MHD_add_response_header(made, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
+  for (const auto& [name, text] : response.headers) {
+    MHD_add_response_header(made, name.c_str(), text.c_str());
+  }
   if (!response.allow.empty()) {
     MHD_add_response_header(made, MHD_HTTP_HEADER_ALLOW, response.allow.c_str());
   }

@@ -14,9 +14,12 @@ struct HttpLimits {
   unsigned event_streams = 16;
   std::size_t body = std::size_t{64} << 10;    // bytes of a request
   std::size_t memory = std::size_t{24} << 10;  // bytes of a connection: headers and buffers
-  std::chrono::seconds idle{10};               // without a byte either way
-  std::chrono::seconds whole{30};              // from the connection's begin to its end; event
-                                               // streams may stay
+  // Bytes of answers that clients have not taken yet, of all together; larger pictures are refused
+  // meanwhile. The only one may have any size.
+  std::size_t untaken = std::size_t{64} << 20;
+  std::chrono::seconds idle{10};   // without a byte either way
+  std::chrono::seconds whole{30};  // from the connection's begin to its end; event
+                                   // streams may stay
 };
 
 // HTTP/1.1 on a listening socket, on one thread of its own that handles all connections.

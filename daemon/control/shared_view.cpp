@@ -36,10 +36,11 @@ std::shared_ptr<const FrameSnapshot> SharedView::next_picture(std::chrono::milli
     std::unique_lock lock(mutex_);
     const std::uint64_t seen = pictures_;
     if (news_.wait_for(lock, timeout, [&] { return closed_ || pictures_ != seen; }) && !closed_) {
-      result = std::move(picture_);
+      result = picture_;
     }
+    // Of several who wait, each gets it; the last does not keep it.
+    if (--wanting_ == 0) picture_.reset();
   }
-  --wanting_;
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>  // jpeglib.h needs it first
 
+#include <fmt/format.h>
 #include <jpeglib.h>
 
 #include <csetjmp>
@@ -80,9 +81,16 @@ std::string png_of(cairo_surface_t* surface) {
   return result;
 }
 
+std::string pgm_of(const GreyImage& picture) {
+  std::string result = fmt::format("P5\n{} {}\n255\n", picture.width, picture.height);
+  result.append(picture.pixels.begin(), picture.pixels.end());
+  return result;
+}
+
 }  // namespace
 
 std::string encode_picture(const FrameSnapshot& frame, PictureFormat format, bool overlay) {
+  if (format == PictureFormat::kPgm) return pgm_of(frame.picture);
   const CairoSurface surface = grey_surface(frame.picture.view());
   if (overlay) {
     const CairoContext context(cairo_create(surface.get()));

@@ -8,7 +8,7 @@
 
 namespace roundel {
 
-// What the control socket answers (docs/guide/control.md). Fields may be added, never renamed or
+// What the control socket answers (docs/guide/arena.md). Fields may be added, never renamed or
 // dropped.
 nlohmann::ordered_json status_json(const status_t& status, const TrackingContext* context,
                                    const std::string& watch_text);

@@ -10,6 +10,7 @@
 #include "calibration/projection_uncertainty.hpp"
 #include "tests/calibration/synthetic_views.hpp"
 #include "tests/error_of.hpp"
+#include "tests/random.hpp"
 #include "tests/slow_build.hpp"
 
 using namespace roundel;
@@ -93,6 +94,39 @@ TEST_CASE("stated deviations are honest: with an exact board and with one that m
     // The views said 0.02 px and had 0.05.
     CHECK(sigma_sum / kRepetitions == doctest::Approx(2.5).epsilon(0.03));
   }
+}
+
+TEST_CASE("deviations are honest where points differ much, and share more than was stated") {
+  constexpr int kRepetitions = test::kSlow ? 10 : 60;
+  constexpr double kScale = 1.5, kFloorPx = 0.006;
+  test::Random random(8);
+  IntrinsicVector squares = IntrinsicVector::Zero();
+  double scale_sum = 0, floor_sum = 0;
+  for (int i = 0; i < kRepetitions; ++i) {
+    SyntheticViews source(Board{}, test::webcam(), 300 + static_cast<std::uint64_t>(i));
+    std::vector<BoardView> views = source.varied_views(15, 0);
+    for (BoardView& view : views) {
+      for (BoardPoint& point : view.points) {
+        const double own = 0.001 * std::exp(random.uniform(0, 4));  // to 0.055 px
+        const double sigma = std::hypot(kScale * own, kFloorPx);
+        point.pixel += sigma * Eigen::Vector2d(random.gaussian(), random.gaussian());
+        point.covariance = Eigen::Matrix2d::Identity() * own * own;
+      }
+    }
+    const auto result = calibrate(source, views);
+    squares += normalised_errors(result, source.camera).cwiseAbs2();
+    scale_sum += result.residual_sigma;
+    floor_sum += result.floor_px;
+  }
+  const double count = kRepetitions;
+  for (int k = 0; k < kIntrinsicParameters; ++k) {
+    CAPTURE(kIntrinsicNames[static_cast<std::size_t>(k)]);
+    CHECK(std::abs(std::sqrt(squares[k] / count) - 1) < 3.5 / std::sqrt(2 * count));
+  }
+  // All together scatter less; with points weighed alike it is 1.2 and more.
+  CHECK(std::sqrt(squares.mean() / count) == doctest::Approx(1).epsilon(test::kSlow ? 0.2 : 0.1));
+  CHECK(scale_sum / count == doctest::Approx(kScale).epsilon(0.1));
+  CHECK(floor_sum / count == doctest::Approx(kFloorPx).epsilon(0.1));
 }
 
 TEST_CASE("a sloppy, bent print costs little, and is found out") {

@@ -66,6 +66,10 @@ TEST_CASE(
     CHECK(ratio < 1 + 4 / std::sqrt(2.0 * count));
     if (count >= 20) CHECK(ratio > 1 - 4 / std::sqrt(2.0 * count));
   }
+  // All nine together scatter less.
+  const double together = std::sqrt(squares.mean() / count);
+  ratios += fmt::format(", together {:.2f}", together);
+  if (count >= 50) CHECK(together == doctest::Approx(1).epsilon(0.1));
   MESSAGE(count, " repetitions, worst: focal length ", fmt::format("{:.5f}", 100 * worst.focal),
           " %, principal point ", fmt::format("{:.4f}", worst.centre_px), " px, total error ",
           fmt::format("{:.4f}", worst.error_px), " px; errors in stated deviations:", ratios);

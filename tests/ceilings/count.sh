@@ -5,7 +5,7 @@
 #   count.sh PROGRAM             only print, as lines for the file of ceilings
 set -euo pipefail
 program=$1 ceilings=${2:-}
-few=2 many=12 frames=32  # ids are read again every 32nd frame, a fifth of the picture is searched in each
+few=2 many=12 frames=16  # ids are read again every sixteenth frame, a fifth of the picture is searched in each
 
 if [[ -n $ceilings && $(uname -m) == x86_64 ]] && ! grep -qw avx2 /proc/cpuinfo ||
    [[ -n $ceilings && $(uname -m) != x86_64 ]]; then

@@ -152,6 +152,11 @@ TEST_CASE("a camera that can't be meant is an error") {
         std::string::npos);
   CHECK(error_for("camera: {controls: {gain: 1, gain: 2}}\n").find("gain\" twice") !=
         std::string::npos);
+  CHECK(error_for("control: {web: \"0.0.0.0:80\"}\n").find("only together with a control.token") !=
+        std::string::npos);
+  CHECK(error_for("control: {web: \"localhost:80\"}\n").find("in numbers") != std::string::npos);
+  CHECK(error_for("control: {web: \"127.0.0.1:80x\"}\n").find("in numbers") != std::string::npos);
+  CHECK(error_for("control: {token: short}\n").find("16 to 128") != std::string::npos);
   CHECK(error_for("camera: {crop_width: 100}\n").find("camera.crop_height go together") !=
         std::string::npos);
 }

@@ -21,7 +21,9 @@ namespace roundel::test {
 // tracked: 200 frames a second, on a thread of its own.
 class ControlRig final : public LoopControl {
  public:
-  ControlRig() : context_(std::make_shared<TrackingContext>()) {
+  // Without frames until show_frames(), if so wanted.
+  explicit ControlRig(bool shows_frames = true)
+      : context_(std::make_shared<TrackingContext>()), shows_frames_(shows_frames) {
     TrackingContext context;
     context.camera_name = "ceiling";
     context.camera = scene_.camera();
@@ -29,7 +31,7 @@ class ControlRig final : public LoopControl {
     context.arena_camera = scene_.arena_camera();
     context.arena_file = folder_.file("arena.yaml");
     context_ = std::make_shared<const TrackingContext>(context);
-    center_.serve({socket(), ""});
+    center_.serve({socket(), "", "", ""});
     loop_ = std::thread([this] { run(); });
   }
   ~ControlRig() override {
@@ -50,6 +52,7 @@ class ControlRig final : public LoopControl {
   }
   std::int64_t frames() const { return frames_; }
 
+  void show_frames() { shows_frames_ = true; }
   // Somebody knocks against the camera.
   void bump() { bumped_ = true; }
 
@@ -80,6 +83,7 @@ class ControlRig final : public LoopControl {
       const std::vector<Marker> markers = plain_corners(scene_);
       const std::int64_t start_ns = monotonic_ns();
       if (descriptor.revents != 0) center_.commands().run(*this);
+      if (!shows_frames_) continue;
       FrameSnapshot& snapshot = center_.next_snapshot();
       snapshot.has_picture = center_.wants_picture();
       if (snapshot.has_picture) snapshot.picture.resize(1920, 1080);
@@ -96,7 +100,7 @@ class ControlRig final : public LoopControl {
   TemporaryDirectory folder_;
   ArenaScene scene_;
   std::shared_ptr<const TrackingContext> context_;
-  std::atomic<bool> ending_{false}, bumped_{false};
+  std::atomic<bool> ending_{false}, bumped_{false}, shows_frames_;
   std::atomic<std::int64_t> frames_{0};
   std::vector<double> hand_over_us_;
   ControlCenter center_;

@@ -89,6 +89,30 @@ TEST_CASE("a calibration that fails says why and changes nothing") {
   CHECK(rig.arenas_set == 0);
 }
 
+TEST_CASE("a calibration that is asked for before the first frame waits for it") {
+  ControlRig rig(false);
+  const std::string request = R"({"width": 3, "height": 2})";
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", request), "202"));
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", request), "running already"));
+  const Json waiting = body_of(ask(rig.socket(), "GET", "/v1/calibration"))["run"];
+  CHECK(waiting["state"] == "running");
+  CHECK(waiting["text"] == "waiting for the first frame");
+  rig.show_frames();
+  CHECK(wait_for_calibration(rig)["run"]["state"] == "done");
+}
+
+TEST_CASE("a calibration without any frame ends with its time limit, and says so") {
+  const ControlRig rig(false);
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena",
+                R"({"width": 3, "height": 2, "time_limit": 0.3})"),
+            "202"));
+  const Json run = wait_for_calibration(rig)["run"];
+  CHECK(run["state"] == "failed");
+  CHECK(run["text"] == "no frame has come from the camera yet");
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", R"({"width": 0, "height": 2})"),
+            "400 Bad Request"));
+}
+
 TEST_CASE("a bumped camera is told to the loop, and calibrated again if that is configured") {
   ControlRig rig;
   wait_for_frames(rig);
@@ -144,13 +168,47 @@ TEST_CASE("reload answers with what is wrong") {
   CHECK(has(answer, "a.yaml:3:1: no such key"));
 }
 
-TEST_CASE("pictures come as JPEG and PNG") {
+TEST_CASE("pictures come as JPEG, PNG and PGM") {
   const ControlRig rig;
   const std::string jpeg = ask(rig.socket(), "GET", "/v1/frame.jpg");
   CHECK(has(jpeg, "Content-Type: image/jpeg"));
   CHECK(has(jpeg, "\r\n\r\n\xff\xd8\xff"));
   const std::string png = ask(rig.socket(), "GET", "/v1/frame.png?overlay=0");
   CHECK(has(png, "\r\n\r\n\x89PNG"));
+  const std::string pgm = ask(rig.socket(), "GET", "/v1/frame.pgm");
+  const std::string head = "\r\n\r\nP5\n1920 1080\n255\n";
+  REQUIRE(has(pgm, head));
+  CHECK(pgm.size() - pgm.find(head) - head.size() == 1920 * 1080);
+}
+
+TEST_CASE("answers that clients leave untaken don't fill the memory") {
+  const TemporaryDirectory folder;
+  ControlSocket socket(folder.file("a.sock"), "");
+  HttpLimits limits;
+  limits.untaken = std::size_t{10} << 20;
+  HttpServer server(
+      socket.take_descriptor(),
+      [](const HttpRequest& request) {
+        HttpResponse response;
+        response.body.assign(request.path == "/large" ? std::size_t{4} << 20 : 100, 'x');
+        return response;
+      },
+      [] { return HttpEvent(); }, limits);
+  std::vector<std::unique_ptr<UnixClient>> lazy;
+  for (int i = 0; i < 3; ++i) {
+    lazy.push_back(std::make_unique<UnixClient>(folder.file("a.sock")));
+    lazy.back()->send("GET /large HTTP/1.1\r\nHost: x\r\n\r\n");
+    // It is there, and all but the beginning of it waits.
+    CHECK(has(lazy.back()->read_until("HTTP/1.1 ", 30s), "HTTP/1.1 "));
+  }
+  CHECK(has(ask(folder.file("a.sock"), "GET", "/large"), "503"));
+  CHECK(has(ask(folder.file("a.sock"), "GET", "/small"), "200 OK"));
+  lazy.clear();
+  bool room = false;
+  for (int i = 0; i < 3000 && !room; ++i) {
+    room = has(ask(folder.file("a.sock"), "GET", "/large"), "200 OK");
+  }
+  CHECK(room);
 }
 
 TEST_CASE("events tell of one frame after another") {

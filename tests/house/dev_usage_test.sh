@@ -24,6 +24,8 @@ expect() {
 
 expect 0 "run [--seconds N] [--robots N] [--host-network]" help
 expect 0 "lab [--long]" help
+expect 0 "boot [DOCTEST OPTIONS]" help
+expect 0 "package          the Debian packages" help
 expect 0 "usage: ./dev COMMAND"
 expect 0 "usage: ./dev COMMAND" --help
 expect 2 "unknown command 'tset'" tset
@@ -34,6 +36,8 @@ expect 2 "--robots needs a whole number" run --robots many
 expect 2 "--seconds needs a whole number" run --seconds
 expect 2 "--seconds needs a whole number" run --seconds=-1
 expect 2 "unknown option '--minutes'" run --minutes 3
+expect 2 "package takes no arguments" package release
+expect 2 "arm64 takes no arguments but --figures" arm64 release
 expect 2 "ceilings takes no arguments" ceilings 3
 expect 2 "lint: there is no folder 'cores'" lint cores
 exit $faults

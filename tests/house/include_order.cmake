@@ -2,7 +2,7 @@
 #   cmake -DROOT=<project or a fixture> -P include_order.cmake
 cmake_minimum_required(VERSION 3.25)
 
-set(folders core calibration config transport simulator daemon tools bench)
+set(folders core calibration config transport simulator daemon tools packaging bench)
 set(core_may_use)
 set(calibration_may_use core)
 set(config_may_use core calibration)
@@ -10,6 +10,7 @@ set(transport_may_use core)
 set(simulator_may_use core)
 set(daemon_may_use core calibration config transport simulator)
 set(tools_may_use core calibration config transport simulator daemon)
+set(packaging_may_use config daemon tools)
 set(bench_may_use core simulator transport)
 
 set(faults "")

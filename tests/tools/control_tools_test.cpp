@@ -3,6 +3,7 @@
 
 #include "calibration/arena_file.hpp"
 #include "tests/child_process.hpp"
+#include "tests/slow_build.hpp"
 #include "tests/temporary_directory.hpp"
 
 using namespace roundel;
@@ -81,8 +82,9 @@ TEST_CASE("roundel calibrates, restores, looks, tells and reloads by a running r
 
 TEST_CASE("a wrong size is refused with status 1 and the numbers") {
   const Rig rig;
-  const Finished refused =
-      rig.run({"calibrate", "arena", "--width", "3", "--height", "3", "--time-limit", "2"});
+  // Twenty frames must come in that time.
+  const Finished refused = rig.run({"calibrate", "arena", "--width", "3", "--height", "3",
+                                    "--time-limit", test::kSlow ? "20" : "2"});
   CHECK(refused.status == 1);
   CHECK(has(refused.errors, "no rectangle of 3 x 3 m"));
   CHECK(refused.output.empty());

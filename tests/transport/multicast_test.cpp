@@ -1,5 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -41,6 +44,38 @@ TEST_CASE("100 markers go over real multicast in parts and arrive as one frame")
   }
   CHECK(subscriber.counts().lost == 0);
   CHECK(subscriber.counts().garbage == 0);
+}
+
+TEST_CASE("a packet without a message is garbage, whatever was received before it") {
+  if (!multicast_is_private()) return;
+  Subscriber subscriber(open_lcm(kUrl, LcmUse::kReceive), "CUT_TEST");
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(7670);
+  group.sin_addr.s_addr = htonl(0xEFFF4C44);  // 239.255.76.68
+  // liblcm 1.3 reads the second, which is nothing but the head of a packet, into what it keeps of
+  // the first, takes the name from there, and passes on a message of a negative size.
+  for (const std::string channel : {"CUT_TEST_STATUS", "CUT_TEST_FRAME"}) {
+    const std::string number(4, '\0'), rest(600, '_');
+    for (const std::string& packet : {"none" + number + channel + '\0' + rest, "LC02" + number}) {
+      REQUIRE(::sendto(socket, packet.data(), packet.size(), 0,
+                       reinterpret_cast<const sockaddr*>(&group), sizeof group) > 0);
+    }
+    // Before another one comes into the same place.
+    pollfd descriptor = {subscriber.descriptor(), POLLIN, 0};
+    REQUIRE(::poll(&descriptor, 1, 10'000) == 1);
+    CHECK(subscriber.next_frame(0s) == nullptr);
+  }
+  ::close(socket);
+  // What is sent properly behind them arrives.
+  PublisherParameters parameters;
+  parameters.channel = "CUT_TEST";
+  Publisher publisher(open_lcm(kUrl, LcmUse::kSend), parameters);
+  publisher.publish(sample_information(1), sample_markers(1));
+  CHECK(subscriber.next_frame(10s) != nullptr);
+  CHECK(subscriber.counts().garbage == 1);
+  CHECK_FALSE(subscriber.status().has_value());
 }
 
 TEST_CASE("without a route to the multicast group the error says so") {
