@@ -36,7 +36,13 @@ bool is_printable(FieldTarget value) {
 }
 
 bool is_response(FieldTarget value) {
-  return ResponseCurve::named(*std::get<std::string*>(value)).has_value();
+  const std::string& name = *std::get<std::string*>(value);
+  return name == "auto" || ResponseCurve::named(name);
+}
+
+bool is_inner_ratio(FieldTarget value) {
+  const double ratio = *std::get<double*>(value);
+  return ratio == 0 || ratio >= 0.2;
 }
 
 bool is_arena_mode(FieldTarget value) {
@@ -94,7 +100,7 @@ constexpr std::array kFields = {
           "text of 1 to 64 printable characters"},
     Field{"camera.calibration", ROUNDEL_TARGET(camera.calibration), 0, 4096},
     Field{"camera.response", ROUNDEL_TARGET(camera.response), 1, 20, is_response,
-          "linear, srgb, or a gamma from 0.2 to 5"},
+          "auto, linear, srgb, or a gamma from 0.2 to 5"},
     Field{"camera.device", ROUNDEL_TARGET(camera.device), 0, 4096, is_path_or_empty,
           "a path, as in /dev/video0 or /dev/v4l/by-id/..., or nothing"},
     Field{"camera.match_card", ROUNDEL_TARGET(camera.match_card), 0, 100},
@@ -116,6 +122,8 @@ constexpr std::array kFields = {
     Field{"marker.bits", ROUNDEL_TARGET(detector.bits), 0, kMaxBits, bits_exist,
           "0 (plain WhyCon markers), or 2 to 16"},
     Field{"marker.hamming", ROUNDEL_TARGET(detector.hamming), 1, kMaxHamming},
+    Field{"marker.inner_ratio", ROUNDEL_TARGET(detector.inner_ratio), 0, 0.7, is_inner_ratio,
+          "0 (not known), or 0.2 to 0.7"},
 
     Field{"marker.height", ROUNDEL_TARGET(mount.height), 0, 10},
     Field{"marker.offset_x", ROUNDEL_TARGET(mount.offset_x), -10, 10},

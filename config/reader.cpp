@@ -181,9 +181,7 @@ class Reader {
                                       "127.0.0.1:8080",
                                       c.control.web));
     }
-    if (const auto response = ResponseCurve::named(c.camera.response)) {
-      loaded_.values.detector.response = *response;
-    }
+    loaded_.values.detector.response = ResponseCurve::named(c.camera.response);
     return std::move(loaded_);
   }
 

@@ -20,6 +20,8 @@ struct Detector::Impl {
   DetectorParameters parameters;
   MarkerSearch search;
   Observer observer;
+  void observe(const LumaView& frame);
+
   std::vector<Segment> segments;
   std::vector<Marker> markers;
 };
@@ -30,6 +32,20 @@ Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 
+void Detector::Impl::observe(const LumaView& frame) {
+  markers.clear();
+  for (const Segment& segment : segments) {
+    const Observation observation = observer.observe(frame, segment);
+    if (!observation.plausible) continue;
+    Marker marker = observer.to_marker(observation, 0);
+    if (observation.id_probability >= parameters.min_id_probability) {
+      marker.id = observation.id;
+      marker.id_probability = observation.id_probability;
+    }
+    markers.push_back(marker);
+  }
+}
+
 std::span<const Marker> Detector::detect(const LumaView& frame) {
   check_frame(frame, impl_->observer.camera());
   impl_->segments.clear();
@@ -38,15 +54,12 @@ std::span<const Marker> Detector::detect(const LumaView& frame) {
   impl_->search.search(frame, {0, 0, frame.width - 1, frame.height - 1},
                        impl_->search.smallest_spacing(),
                        static_cast<std::size_t>(impl_->parameters.max_markers), impl_->segments);
-  for (const Segment& segment : impl_->segments) {
-    const Observation observation = impl_->observer.observe(frame, segment);
-    if (!observation.plausible) continue;
-    Marker marker = impl_->observer.to_marker(observation, 0);
-    if (observation.id_probability >= impl_->parameters.min_id_probability) {
-      marker.id = observation.id;
-      marker.id_probability = observation.id_probability;
-    }
-    impl_->markers.push_back(marker);
+  // Where the markers tell that the camera's curve is another one, they are looked at again.
+  constexpr int kRounds = 3;
+  impl_->observer.forget_curve();
+  impl_->observe(frame);
+  for (int round = 1; round < kRounds && impl_->observer.settle_curve(); ++round) {
+    impl_->observe(frame);
   }
   std::sort(impl_->markers.begin(), impl_->markers.end(),
             [](const Marker& a, const Marker& b) { return a.v != b.v ? a.v < b.v : a.u < b.u; });

@@ -47,8 +47,8 @@ int fitting_column(const LumaView& frame, const Seed& seed, int reach) {
 MarkerSearch::MarkerSearch(const DetectorParameters& parameters)
     : parameters_(parameters), finder_(parameters) {
   // A row pair through the bright centre of the smallest marker.
-  const double centre_height = kPlainInnerRatioMin * parameters.min_diameter_px;
-  smallest_spacing_ = std::clamp(static_cast<int>(centre_height) - 1, 1, 8);
+  const double centre_height = kPlainInnerRatioMin * 0.75 * parameters.min_diameter_px;
+  smallest_spacing_ = std::clamp(static_cast<int>(std::lround(centre_height)) - 1, 1, 8);
 }
 
 void MarkerSearch::begin(const LumaView& frame) {

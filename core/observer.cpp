@@ -38,6 +38,8 @@ void require(bool condition, const char* what) {
 void check(const DetectorParameters& p) {
   require(p.diameter_m > 0 && std::isfinite(p.diameter_m),
           "the marker's diameter must be positive");
+  require(p.inner_ratio == 0 || (p.inner_ratio >= 0.2 && p.inner_ratio <= 0.7),
+          "inner_ratio must be 0.2 to 0.7, or 0 when it is not known");
   require(p.max_markers >= 1 && p.max_markers <= 100000, "max_markers must be 1 to 100000");
   require(p.min_diameter_px >= 6, "min_diameter_px must be 6 or more");
   require(p.max_diameter_px >= p.min_diameter_px,
@@ -58,11 +60,17 @@ bool may_be_plain_centre(const Segment& segment) {
   const double ellipse_area = std::numbers::pi * inner.a * inner.b;
   const double area =
       segment.bright_share * std::numbers::pi * segment.ellipse.a * segment.ellipse.b;
-  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.1 * grid) return false;
+  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.2 * grid) return false;
   const double tolerance = 0.06 + grid;
   return std::abs(inner.a / (ratio * segment.ellipse.a) - 1) < tolerance &&
          std::abs(inner.b / (ratio * segment.ellipse.b) - 1) < tolerance;
 }
+
+// A printed disc is as large as it should be to so much of the black one's radius. The picture
+// tells a print of another ratio by as much as blur, an unknown curve of the camera and the pixel
+// grid leave of its area.
+constexpr double kPrintedRatioSigma = 0.0005;
+constexpr double kOtherRatio = 0.012, kOtherRatioPx = 0.5;
 
 double mean_radius(const Ellipse& ellipse) {
   return std::sqrt(ellipse.a * ellipse.b);
@@ -82,10 +90,28 @@ double plain_log_likelihood(const Segment& segment, double inner_area_share,
   return -0.5 * (seen - expected).squaredNorm() / variance;
 }
 
+// Whether it is the word that was read that stands there: codes of another length, dirt or print of
+// some other kind may be read as a word, but leave more residuals inside than the outer rim has,
+// which looks the same whatever is inside.
+double word_credence(const std::optional<PhotometricPose>& fitted, const Segment& segment) {
+  constexpr double kUsualExcess = 0.08;  // deviation inside that a right word may add, of contrast
+  constexpr double kTogether = 8;        // pixels that err together
+  if (!fitted || fitted->inner_pixels == 0) return 1;
+  const double usual = kUsualExcess * segment.levels.contrast();
+  const double ratio = fitted->inner_square / (fitted->outer_square + usual * usual);
+  if (ratio <= 1) return 1;
+  const double against = 0.5 * fitted->inner_pixels / kTogether * (ratio - 1 - std::log(ratio));
+  constexpr double kOtherPrint = 0.05;  // beforehand
+  return 1 / (1 + kOtherPrint * std::expm1(std::min(against, 50.0)));
+}
+
 }  // namespace
 
 Observer::Observer(const DetectorParameters& parameters, std::optional<CameraModel> camera)
-    : parameters_(parameters), camera_(camera), fit_(parameters.response) {
+    : parameters_(parameters),
+      camera_(camera),
+      response_(parameters.response.value_or(ResponseCurve::linear())),
+      fit_(response_) {
   check(parameters);
   if (parameters.bits != 0) reader_.emplace(parameters.bits, parameters.hamming);
 }
@@ -110,6 +136,19 @@ struct Observer::Candidate {
     return fitted->mean_square < kMaxResidual * kMaxResidual * contrast * contrast;
   }
 };
+
+// The ratio that was configured, unless the picture shows another print.
+Pattern Observer::plain_pattern(const Segment& segment) const {
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::kPlain;
+  pattern.inner_ratio = std::sqrt(segment.bright_share);
+  const double tolerance = kOtherRatio + kOtherRatioPx / mean_radius(segment.ellipse);
+  if (std::abs(pattern.inner_ratio - parameters_.inner_ratio) < tolerance) {
+    pattern.inner_ratio = parameters_.inner_ratio;
+    pattern.inner_sigma = kPrintedRatioSigma;
+  }
+  return pattern;
+}
 
 void Observer::observe_with_camera(const LumaView& frame, Observation& observation) {
   const Segment& segment = observation.segment;
@@ -154,8 +193,7 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
       candidate.hypothesis.log_likelihood =
           plain_log_likelihood(segment, segment.bright_share, candidate.centre);
       if (may_be_plain_centre(segment)) {
-        candidate.pattern.kind = Pattern::Kind::kPlain;
-        candidate.pattern.inner_ratio = std::sqrt(segment.bright_share);
+        candidate.pattern = plain_pattern(segment);
       }
     }
     candidate.hypothesis.pose = pose_from_circle(candidate.circle, yaw);
@@ -166,7 +204,11 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
   observation.poses = {candidates[best].hypothesis, candidates[1 - best].hypothesis};
   if (candidates[best].reading && candidates[best].reading->id > 0) {
     observation.id = candidates[best].reading->id;
-    observation.id_probability = candidates[best].reading->probability;
+    observation.id_probability =
+        candidates[best].reading->probability * word_credence(candidates[best].fitted, segment);
+  }
+  if (!parameters_.response && candidates[best].fitted && curve_evidence_.wants_more()) {
+    weigh_curve(frame, segment, candidates[best]);
   }
   // A code that can be read is proof enough, whatever light or glare do to the residuals.
   const bool read = observation.id_probability >= parameters_.min_id_probability;
@@ -187,8 +229,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     Candidate& candidate = candidates[i];
     auto& fitted = candidate.fitted;
     PoseHypothesis& hypothesis = candidate.hypothesis;
-    EdgeLook look;
-    if (candidate.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
+    const EdgeLook look = edge_look(candidate.pattern);
     const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
     if (loaded && lead < kDecided) {
       const PhotometricState start =
@@ -220,6 +261,60 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     candidate.hypothesis.log_likelihood =
         -0.5 * candidate.fitted->mean_square * candidate.fitted->pixels / variance;
   }
+}
+
+// How well the marker would be explained by curves around the likeliest one.
+void Observer::weigh_curve(const LumaView& frame, const Segment& segment,
+                           const Candidate& candidate) {
+  const Pattern& pattern = candidate.pattern;
+  const EdgeLook usual = edge_look(pattern);
+  if (usual.shift_sigma_px < 0.1) return;  // a shift that may not be fitted would look like a curve
+  // Light is read off noisy grey levels, and noise as strong as this bends a curve by itself.
+  constexpr double kMaxNoise = 0.04;  // share of the contrast
+  const double limit = kMaxNoise * segment.levels.contrast();
+  if (candidate.fitted->mean_square > limit * limit) return;
+  const PhotometricState& fitted = candidate.fitted->state;
+  EdgeLook look = usual;
+  look.blur_px = fitted.blur_px;
+  constexpr double kStartDeviation = 0.02, kCurveError = 0.01;  // share of the contrast
+  const double error = kCurveError * segment.levels.contrast();
+  const double variance = candidate.fitted->mean_square + error * error;
+  FitPlan plan;
+  plan.rough_steps = 0;
+  plan.max_steps = 5;
+  plan.deviation =
+      std::sqrt(candidate.fitted->mean_square) + kStartDeviation * segment.levels.contrast();
+  std::array<double, 3> squares{};
+  bool whole = true;
+  for (std::size_t k = 0; k < squares.size() && whole; ++k) {
+    const double exponent =
+        curve_evidence_.centre() + (static_cast<double>(k) - 1) * CurveEvidence::kProbe;
+    fit_.set_response(ResponseCurve::like_srgb(exponent));
+    whole = fit_.load(frame, *camera_, segment.ellipse, parameters_.diameter_m / 2, kReach);
+    if (!whole) break;
+    PhotometricState start = fit_.first_guess(fitted.pose, segment.levels, pattern, look);
+    start.stretch_u = fitted.stretch_u;
+    start.stretch_d = fitted.stretch_d;
+    const auto again = fit_.fit(start, pattern, look, plan);
+    whole = again.has_value();
+    if (whole) squares[k] = again->mean_square * again->pixels * again->trust / variance;
+  }
+  fit_.set_response(response_);
+  if (whole) curve_evidence_.add(squares);
+}
+
+bool Observer::settle_curve() {
+  if (parameters_.response || curve_evidence_.exponent() == exponent_) return false;
+  exponent_ = curve_evidence_.exponent();
+  response_ = exponent_ == 1 ? ResponseCurve::linear() : ResponseCurve::like_srgb(exponent_);
+  fit_.set_response(response_);
+  return true;
+}
+
+void Observer::forget_curve() {
+  if (parameters_.response) return;
+  curve_evidence_.forget();
+  settle_curve();
 }
 
 Observation Observer::observe(const LumaView& frame, const Segment& segment) {

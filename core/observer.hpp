@@ -5,6 +5,7 @@
 
 #include "core/camera_model.hpp"
 #include "core/code_reader.hpp"
+#include "core/curve_evidence.hpp"
 #include "core/detector_parameters.hpp"
 #include "core/luma_view.hpp"
 #include "core/marker.hpp"
@@ -54,24 +55,32 @@ class Observer {
                                     const PoseHypothesis& last, const Ellipse& last_ellipse,
                                     const Eigen::Vector3d& turn);
 
+  // Takes the response curve for what the markers observed so far tell, if that has changed.
+  bool settle_curve();
+  // Back to knowing nothing of the curve, unless it was given.
+  void forget_curve();
+
   // The observation as users get it, with the given one of its poses; id and track are the
   // caller's.
   Marker to_marker(const Observation& observation, int pose_index) const;
 
  private:
-  // How far a plain marker's edges may be shifted as a whole, pixels: beside an unknown inner
-  // ratio, a shift of all edges looks like another distance.
-  static constexpr double kPlainShiftSigma = 0.02;
   // Residuals that no noise explains, share of the contrast.
   static constexpr double kModelError = 0.01;
 
   struct Candidate;
+  Pattern plain_pattern(const Segment& segment) const;
   void observe_with_camera(const LumaView& frame, Observation& observation);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
+
+  void weigh_curve(const LumaView& frame, const Segment& segment, const Candidate& candidate);
 
   DetectorParameters parameters_;
   std::optional<CameraModel> camera_;
   std::optional<CodeReader> reader_;  // none when bits is 0
+  ResponseCurve response_;            // in use
+  double exponent_ = 1;               // of it, where it was not given
+  CurveEvidence curve_evidence_;
   PhotometricFit fit_;
 };
 

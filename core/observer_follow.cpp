@@ -56,9 +56,7 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
   plan.unknowns = in_motion ? kCodeUnknowns : kFollowedUnknowns;
   plan.max_steps = 4;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * segment.levels.contrast();
-  EdgeLook look;
-  if (last.pattern.kind != Pattern::Kind::kCode) look.shift_sigma_px = kPlainShiftSigma;
-  const auto fitted = fit_.fit(start, last.pattern, look, plan);
+  const auto fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);
   if (!fitted || fitted->trust < kMinTrust) return std::nullopt;
   const double floor = kModelError * segment.levels.contrast();
   if (fitted->mean_square > kMaxGrowth * (last.mean_square + floor * floor)) return std::nullopt;

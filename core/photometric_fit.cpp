@@ -9,14 +9,18 @@ namespace roundel {
 
 namespace {
 
-constexpr double kMinBlur = 0.29;  // the pixel's own width, 1/sqrt(12)
+constexpr double kPixelVariance = 1 / 12.0;
+constexpr double kMinBlur = 0.29;  // the pixel's own width, its root
+
+// Share of an edge's blur that may be a box and is still taken for a Gaussian: wrong by 0.2 % of
+// the contrast.
+constexpr double kMaxBoxShare = 0.25;
 constexpr double kMaxStretch = 0.9;
 
 // What is known before anything is seen, one standard deviation. Weak against any marker that can
 // be read; they keep what can't be told apart from running away.
 constexpr double kSlopePrior = 0.3;  // of the light, share a radius
 constexpr double kStretchPrior = 0.5;
-constexpr double kInnerPrior = 0.1;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
 // Where a fit ends: a step that takes so many variances of the residuals off the sum of squares
@@ -24,8 +28,32 @@ constexpr double kPinned = 1e-4;  // for what this pattern does not show
 // to whole grey levels and the model itself leave some variance.
 constexpr double kSettled = 30, kLeastVariance = 0.25;
 
+// What the model gets wrong of an edge that is all box (corners, curves in a pixel), share of the
+// contrast as if it were noise of every pixel. Blur makes the more of it good the more there is.
+constexpr double kBoxError = 0.008;
+
 // Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
 constexpr double kRobust = 3.0, kOutlier = 8.0;
+
+}  // namespace
+
+EdgeLook edge_look(const Pattern& pattern) {
+  constexpr double kKnownRatio = 0.01, kSmallShift = 0.02;  // share of the radius; pixels
+  EdgeLook look;
+  const bool known = pattern.kind == Pattern::Kind::kCode ||
+                     (pattern.kind == Pattern::Kind::kPlain && pattern.inner_sigma < kKnownRatio);
+  if (!known) look.shift_sigma_px = kSmallShift;
+  return look;
+}
+
+namespace {
+
+// Variance of the grey levels about the model, that of pixels and what makes them err together.
+double variance_of(const PhotometricState& state, double mean_square) {
+  const double box = kPixelVariance / (state.blur_px * state.blur_px);
+  const double error = kBoxError * box * box * state.contrast;
+  return std::max(mean_square, kLeastVariance) + error * error;
+}
 
 }  // namespace
 
@@ -84,6 +112,10 @@ PhotometricModel PhotometricFit::model_of(const PhotometricState& state, const P
   m.shift = static_cast<float>(state.shift_px);
   m.stretch_u = static_cast<float>(state.stretch_u);
   m.stretch_d = static_cast<float>(state.stretch_d);
+  const double stretch = std::hypot(state.stretch_u, state.stretch_d);
+  m.motion = static_cast<float>(stretch);
+  m.boxed = std::max(kPixelVariance / (state.blur_px * state.blur_px),
+                     2 * stretch / (1 + stretch)) > kMaxBoxShare;
   const bool coded = pattern.kind == Pattern::Kind::kCode;
   m.inner = static_cast<float>(coded ? kCodeInnerRatio : state.inner_ratio);
   m.halves = coded ? 2 * pattern.bits : 0;
@@ -118,7 +150,7 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   }
   Step step;
   step.mean_square = static_cast<double>(sums.squares / std::max(1.0F, sums.weights));
-  const double variance = std::max(step.mean_square, kLeastVariance);
+  const double variance = variance_of(state, step.mean_square);
   const auto add = [&](int unknown, double difference, double deviation) {
     const double weight = variance / (deviation * deviation);
     normal_matrix(unknown, unknown) += weight;
@@ -135,7 +167,7 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   }
   if constexpr (kCount > kCodeUnknowns) {
     const bool plain = pattern.kind == Pattern::Kind::kPlain;
-    add(kInner, pattern.inner_ratio - state.inner_ratio, plain ? kInnerPrior : kPinned);
+    add(kInner, pattern.inner_ratio - state.inner_ratio, plain ? pattern.inner_sigma : kPinned);
   }
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
@@ -204,6 +236,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
     PixelColumns outer = pixels_.outer(), inner = pixels_.inner();
     outer.every = inner.every = taken <= plan.rough_steps ? 2 : 1;
     add_outer_pixels(model, outer, unknowns, sums);
+    const float outer_squares = sums.squares, outer_weights = sums.weights;
     if (inside) add_inner_pixels(model, inner, unknowns, sums);
     const Step step = unknowns == kFollowedUnknowns
                           ? solve<kFollowedUnknowns>(state, pattern, look, sums, plan, taken)
@@ -224,9 +257,16 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.state = state;
       result.state.pose.orientation = with_positive_w(pose.orientation);
       result.mean_square = step.mean_square;
+      const auto mean = [](float squares, float weights) {
+        return static_cast<double>(squares / std::max(1.0F, weights));
+      };
+      result.outer_square = mean(outer_squares, outer_weights);
+      result.inner_square = mean(sums.squares - outer_squares, sums.weights - outer_weights);
+      result.inner_pixels = inside ? pixels_.inner_count() : 0;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
       result.trust = static_cast<double>(sums.weights) / result.pixels;
-      result.covariance = to_camera_axes(state, step.mean_square * step.inverse);
+      result.covariance =
+          to_camera_axes(state, variance_of(state, step.mean_square) * step.inverse);
       return result;
     }
   }

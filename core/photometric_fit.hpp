@@ -19,13 +19,14 @@ namespace roundel {
 struct Pattern {
   enum class Kind {
     kCode,    // the teeth of a word
-    kPlain,   // a white disc; its ratio is fitted
+    kPlain,   // a white disc
     kUnknown  // only the outer rim is used
   };
   Kind kind = Kind::kUnknown;
   int bits = 0;
   std::uint32_t word = 0;  // canonical; starts at the pose's x axis
-  double inner_ratio = 0;  // first guess, kPlain
+  double inner_ratio = 0;  // kPlain: as far as it is known, and one standard deviation
+  double inner_sigma = 0.1;
 };
 
 // How edges look in this image, as far as it is known from elsewhere.
@@ -35,6 +36,10 @@ struct EdgeLook {
   double shift_px = 0;       // growth of dark over bright
   double shift_sigma_px = 0.3;
 };
+
+// With an unknown inner ratio, or without anything known inside, a shift of all edges looks like
+// another distance: then it is taken for small.
+EdgeLook edge_look(const Pattern& pattern);
 
 // Everything that the picture of a marker depends on.
 struct PhotometricState {
@@ -58,9 +63,11 @@ struct FitPlan {
 struct PhotometricPose {
   PhotometricState state;
   PoseCovariance covariance = PoseCovariance::Zero();
-  double mean_square = 0;  // of the residuals, grey levels squared
-  int pixels = 0;          // that the fit used
-  double trust = 0;        // share of them that it believed: the rest looks like something else
+  double mean_square = 0;                     // of the residuals, grey levels squared
+  int pixels = 0;                             // that the fit used
+  double outer_square = 0, inner_square = 0;  // the same of the outer rim, and of what is inside
+  int inner_pixels = 0;
+  double trust = 0;  // share of them that it believed: the rest looks like something else
 };
 
 // Fits a marker's pose to the grey values of its image (METHOD.md section 6): every pixel near an
@@ -72,6 +79,9 @@ struct PhotometricPose {
 class PhotometricFit {
  public:
   explicit PhotometricFit(const ResponseCurve& response) : response_(response) {}
+
+  // What is loaded from now on is seen through another curve.
+  void set_response(const ResponseCurve& response) { response_ = response; }
 
   // Takes the pixels near the edges of the marker under an ellipse, `reach_px` to either side.
   // False when there are too few or the lens model ends.

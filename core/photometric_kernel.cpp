@@ -107,93 +107,86 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
   sums.weights += simd::sum(weights);
 }
 
-template <int kUnknowns>
+template <int kUnknowns, bool kBoxed>
 ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
   add_pixels<kUnknowns>(
       m, pixels, sums, [&](const PlanePoint& p) __attribute__((always_inline)) {
-        return photometric::outer_rim(m, p);
+        return photometric::outer_rim<kBoxed>(m, p);
       });
 }
 
-template <int kUnknowns>
+template <int kUnknowns, bool kBoxed>
 ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixels,
                              PhotometricSums& sums) {
   add_pixels<kUnknowns>(
       m, pixels, sums, [&](const PlanePoint& p) __attribute__((always_inline)) {
-        return photometric::code_ring(m, p);
+        return photometric::code_ring<kBoxed>(m, p);
       });
 }
 
-template <int kUnknowns>
+template <int kUnknowns, bool kBoxed>
 ROUNDEL_INLINE void add_plain(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
   add_pixels<kUnknowns>(
       m, pixels, sums, [&](const PlanePoint& p) __attribute__((always_inline)) {
-        return photometric::plain_centre(m, p);
+        return photometric::plain_centre<kBoxed>(m, p);
       });
 }
 
 using Kernel = void (*)(const PhotometricModel&, const PixelColumns&, PhotometricSums&);
 struct Kernels {
-  Kernel followed_outer, followed_code, code_outer, code_code, outer, plain;
+  struct Set {
+    Kernel followed_outer, followed_code, code_outer, code_code, outer, plain;
+  };
+  Set gaussian, boxed;
 };
 
 // The attribute is the whole difference between the sets of kernels; the bodies are inlined.
 // NOLINTBEGIN(bugprone-macro-parentheses): attributes and names take none.
-#define ROUNDEL_KERNELS(suffix, attribute)                                                 \
-  attribute void followed_outer_##suffix(const PhotometricModel& m, const PixelColumns& p, \
-                                         PhotometricSums& s) {                             \
-    add_outer<kFollowedUnknowns>(m, p, s);                                                 \
-  }                                                                                        \
-  attribute void followed_code_##suffix(const PhotometricModel& m, const PixelColumns& p,  \
-                                        PhotometricSums& s) {                              \
-    add_code<kFollowedUnknowns>(m, p, s);                                                  \
-  }                                                                                        \
-  attribute void code_outer_##suffix(const PhotometricModel& m, const PixelColumns& p,     \
-                                     PhotometricSums& s) {                                 \
-    add_outer<kCodeUnknowns>(m, p, s);                                                     \
-  }                                                                                        \
-  attribute void code_code_##suffix(const PhotometricModel& m, const PixelColumns& p,      \
-                                    PhotometricSums& s) {                                  \
-    add_code<kCodeUnknowns>(m, p, s);                                                      \
-  }                                                                                        \
-  attribute void outer_##suffix(const PhotometricModel& m, const PixelColumns& p,          \
-                                PhotometricSums& s) {                                      \
-    add_outer<kPhotometricUnknowns>(m, p, s);                                              \
-  }                                                                                        \
-  attribute void plain_##suffix(const PhotometricModel& m, const PixelColumns& p,          \
-                                PhotometricSums& s) {                                      \
-    add_plain<kPhotometricUnknowns>(m, p, s);                                              \
-  }                                                                                        \
-  constexpr Kernels k_kernels_##suffix{followed_outer_##suffix, followed_code_##suffix,    \
-                                       code_outer_##suffix,     code_code_##suffix,        \
-                                       outer_##suffix,          plain_##suffix};
+#define ROUNDEL_KERNEL(name, attribute, part, unknowns, boxed)                                \
+  attribute void name(const PhotometricModel& m, const PixelColumns& p, PhotometricSums& s) { \
+    part<unknowns, boxed>(m, p, s);                                                           \
+  }
+#define ROUNDEL_KERNELS(set, attribute, boxed)                                                \
+  ROUNDEL_KERNEL(set##_followed_outer, attribute, add_outer, kFollowedUnknowns, boxed)        \
+  ROUNDEL_KERNEL(set##_followed_code, attribute, add_code, kFollowedUnknowns, boxed)          \
+  ROUNDEL_KERNEL(set##_code_outer, attribute, add_outer, kCodeUnknowns, boxed)                \
+  ROUNDEL_KERNEL(set##_code_code, attribute, add_code, kCodeUnknowns, boxed)                  \
+  ROUNDEL_KERNEL(set##_outer, attribute, add_outer, kPhotometricUnknowns, boxed)              \
+  ROUNDEL_KERNEL(set##_plain, attribute, add_plain, kPhotometricUnknowns, boxed)              \
+  constexpr Kernels::Set k_##set{set##_followed_outer, set##_followed_code, set##_code_outer, \
+                                 set##_code_code,      set##_outer,         set##_plain};
 
 // NOLINTEND(bugprone-macro-parentheses)
-ROUNDEL_KERNELS(baseline, )
+ROUNDEL_KERNELS(baseline, , false)
+ROUNDEL_KERNELS(baseline_boxed, , true)
+constexpr Kernels k_baseline_kernels{k_baseline, k_baseline_boxed};
 #if defined(__x86_64__)
 // Without fused multiply-add, which would round otherwise than the baseline.
-ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))))
+ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))), false)
+ROUNDEL_KERNELS(avx2_boxed, __attribute__((target("avx2"))), true)
+constexpr Kernels k_avx2_kernels{k_avx2, k_avx2_boxed};
 #endif
 
 const Kernels& best_kernels() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return k_kernels_avx2;
+  if (__builtin_cpu_supports("avx2")) return k_avx2_kernels;
 #endif
-  return k_kernels_baseline;
+  return k_baseline_kernels;
 }
 
-const Kernels& kernels(VectorUnit unit) {
+const Kernels::Set& kernels(const PhotometricModel& model, VectorUnit unit) {
   static const Kernels& best = best_kernels();
-  return unit == VectorUnit::kBest ? best : k_kernels_baseline;
+  const Kernels& k = unit == VectorUnit::kBest ? best : k_baseline_kernels;
+  return model.boxed ? k.boxed : k.gaussian;
 }
 
 }  // namespace
 
 void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels, int unknowns,
                       PhotometricSums& sums, VectorUnit unit) {
-  const Kernels& k = kernels(unit);
+  const Kernels::Set& k = kernels(model, unit);
   const Kernel add = unknowns == kFollowedUnknowns ? k.followed_outer
                      : unknowns == kCodeUnknowns   ? k.code_outer
                                                    : k.outer;
@@ -202,7 +195,7 @@ void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels,
 
 void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels, int unknowns,
                       PhotometricSums& sums, VectorUnit unit) {
-  const Kernels& k = kernels(unit);
+  const Kernels::Set& k = kernels(model, unit);
   const Kernel add = model.halves == 0               ? k.plain
                      : unknowns == kFollowedUnknowns ? k.followed_code
                                                      : k.code_code;

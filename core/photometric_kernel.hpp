@@ -51,8 +51,12 @@ struct PhotometricModel {
   std::array<float, 4> pixel_slope;  // d(normalised)/d(pixel), row by row
   std::array<float, 3> eye;          // the camera in the marker frame, units of the radius
   float dark, contrast, slope_x, slope_y, blur, shift, stretch_u, stretch_d;
-  float inner;  // rim of the bright centre
-  int halves;   // half-teeth of the code, 0 without
+  // Edges are seen through boxes (a pixel's square, an even motion during the exposure), not
+  // through a Gaussian of their variance: dearer, and worth it where they are much of the blur.
+  bool boxed;
+  float motion;  // what motion adds to the blur's variance, half of it, over the mean variance
+  float inner;   // rim of the bright centre
+  int halves;    // half-teeth of the code, 0 without
   // Bit k of the middle word: half-tooth k is bright; of the others: its neighbour two before, one
   // before, one after, two after.
   std::array<std::int32_t, 5> colours;

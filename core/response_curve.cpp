@@ -45,6 +45,19 @@ ResponseCurve ResponseCurve::power(double gamma) {
   return curve;
 }
 
+ResponseCurve ResponseCurve::like_srgb(double exponent) {
+  const double offset = 0.055 * (exponent - 1) / 1.4;
+  const double least = std::pow(offset > 0 ? offset / (1 + offset) : 0.0, exponent);
+  ResponseCurve curve;
+  for (std::size_t k = 0; k < 256; ++k) {
+    const double x = std::max(0.0, (static_cast<double>(k) / 255 + offset) / (1 + offset));
+    curve.light_[k] = static_cast<float>(255 * (std::pow(x, exponent) - least) / (1 - least)) +
+                      static_cast<float>(k) * 1e-3F;  // strictly rising
+  }
+  curve.fill_slopes();
+  return curve;
+}
+
 std::optional<ResponseCurve> ResponseCurve::named(std::string_view name) {
   if (name == "linear") return linear();
   if (name == "srgb") return srgb();

@@ -19,6 +19,9 @@ class ResponseCurve {
   // grey = 255 (light / 255)^(1 / gamma). Throws std::invalid_argument unless gamma is 0.2 to 5.
   static ResponseCurve power(double gamma);
 
+  // Curves that lead from the linear one (exponent 1) to that of sRGB without its foot (2.4).
+  static ResponseCurve like_srgb(double exponent);
+
   // "linear", "srgb" or a gamma like "2.2". Nothing for anything else.
   static std::optional<ResponseCurve> named(std::string_view name);
 

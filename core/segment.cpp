@@ -10,6 +10,7 @@ namespace roundel {
 namespace {
 
 constexpr int kDirections = 16;
+constexpr double kMinShortSide = 0.75;  // of the smallest diameter
 constexpr double kRingRadius = 0.8;     // middle of the dark ring, share of the outer radius
 constexpr double kMarginRadius = 1.13;  // inside the printed white margin
 constexpr double kMinMarginGap = 1.5;  // pixels outside the edge, so that blur does not reach there
@@ -97,7 +98,8 @@ Verdict SegmentFinder::examine(const LumaView& frame, int u, int v, int threshol
   const int own = static_cast<int>(std::lround(segment_.levels.middle()));
   constexpr double kSameThreshold = 0.04;  // share of the contrast: a few hundredths of a pixel
   if (std::abs(own - threshold) <= kSameThreshold * segment_.levels.contrast()) return verdict;
-  return examine_once(frame, u, v, own, limits);
+  if (examine_once(frame, u, v, own, limits) == Verdict::kAccepted) return Verdict::kAccepted;
+  return examine_once(frame, u, v, threshold, limits);
 }
 
 Verdict SegmentFinder::examine_once(const LumaView& frame, int u, int v, int threshold,
@@ -114,7 +116,7 @@ Verdict SegmentFinder::examine_once(const LumaView& frame, int u, int v, int thr
   }
   const Region& region = filler_.region();
   const int short_side = std::min(region.box.width(), region.box.height());
-  if (short_side < parameters_.min_diameter_px) return Verdict::kTooSmall;
+  if (short_side < kMinShortSide * parameters_.min_diameter_px) return Verdict::kTooSmall;
 
   // An ellipse fills pi/4 of its box when upright; one of aspect 1:4 lying at 45 degrees, 0.37 of
   // it.
@@ -156,7 +158,10 @@ Verdict SegmentFinder::examine_once(const LumaView& frame, int u, int v, int thr
   const double ellipse_area = std::numbers::pi * ellipse->a * ellipse->b;
   const double tolerance = parameters_.circularity_tolerance + kGridCircularity / ellipse->b;
   if (std::abs(ellipse_area / filled_area - 1) > tolerance) return Verdict::kNotElliptic;
-  if (2 * ellipse->b < parameters_.min_diameter_px) return Verdict::kTooSmall;
+  if (2 * ellipse->b < kMinShortSide * parameters_.min_diameter_px ||
+      2 * std::sqrt(ellipse->a * ellipse->b) < parameters_.min_diameter_px) {
+    return Verdict::kTooSmall;
+  }
   if (2 * ellipse->a > parameters_.max_diameter_px) return Verdict::kTooLarge;
 
   const auto levels = measure_levels(frame, *ellipse, parameters_.min_contrast);

@@ -74,13 +74,17 @@ bool Tracker::Impl::follow(const LumaView& frame, const Track& track) {
   constexpr double kRing = 0.8;
   const double cosine = std::cos(expected.angle), sine = std::sin(expected.angle);
   const int extent = static_cast<int>(kMaxGrowth * 2 * expected.a) + 4;
-  for (const double side : {-kRing, kRing}) {
-    const int u = static_cast<int>(std::lround(expected.u + side * expected.a * cosine));
-    const int v = static_cast<int>(std::lround(expected.v + side * expected.a * sine));
-    if (!frame.contains(u, v) || search.is_claimed(u, v)) continue;
-    const int threshold = static_cast<int>(std::lround(levels->middle()));
-    if (search.examine(frame, u, v, threshold, {extent, extent}) == Verdict::kAccepted) {
-      return similar_size(search.segment().ellipse, track.ellipse);
+  // Half way between the levels; where the edge of a shadow crosses the marker, its shaded white
+  // may be darker than that.
+  for (const double height : {0.5, 0.25}) {
+    const int threshold = static_cast<int>(std::lround(levels->dark + height * levels->contrast()));
+    for (const double side : {-kRing, kRing}) {
+      const int u = static_cast<int>(std::lround(expected.u + side * expected.a * cosine));
+      const int v = static_cast<int>(std::lround(expected.v + side * expected.a * sine));
+      if (!frame.contains(u, v) || search.is_claimed(u, v)) continue;
+      if (search.examine(frame, u, v, threshold, {extent, extent}) == Verdict::kAccepted) {
+        return similar_size(search.segment().ellipse, track.ellipse);
+      }
     }
   }
   return false;
@@ -247,11 +251,13 @@ std::span<const Marker> Tracker::track(const LumaView& frame) {
     return track.missed > kMaxMissed || track.implausible > kMaxImplausible;
   });
   self.publish();
+  self.observer.settle_curve();  // from the next frame on
   return self.markers;
 }
 
 void Tracker::reset() {
   impl_->tracks.clear();
+  impl_->observer.forget_curve();
   impl_->band = 0;
 }
 

@@ -25,6 +25,12 @@ std::shared_ptr<DetectionOptions> add_detection_options(CLI::App& command,
       ->type_name("N")
       ->capture_default_str();
   command
+      .add_option("--inner-ratio", parameters.inner_ratio,
+                  "Of plain markers: white over black diameter; 0: not known")
+      ->check(CLI::Range(0.2, 0.7) | CLI::IsMember({0.0}))
+      ->type_name("RATIO")
+      ->default_str("0.4098");
+  command
       .add_option("--arena", options->arena_file,
                   "Arena calibration (roundel calibrate arena): adds arena coordinates")
       ->type_name("FILE");
@@ -51,17 +57,18 @@ std::shared_ptr<DetectionOptions> add_detection_options(CLI::App& command,
           "--response",
           [options](const std::string& name) {
             const auto response = ResponseCurve::named(name);
-            if (!response) {
-              throw CLI::ValidationError("--response",
-                                         "'" + name +
-                                             "' is no response curve; accepted: linear, srgb, or a "
-                                             "gamma from 0.2 to 5");
+            if (!response && name != "auto") {
+              throw CLI::ValidationError(
+                  "--response", "'" + name +
+                                    "' is no response curve; accepted: auto, linear, srgb, or a "
+                                    "gamma from 0.2 to 5");
             }
-            options->parameters.response = *response;
+            options->parameters.response = response;
           },
-          "How the camera turned light into grey levels: linear, srgb or a gamma")
+          "How the camera turned light into grey levels: linear, srgb, a gamma, or auto: as the "
+          "markers tell")
       ->type_name("CURVE")
-      ->default_str("linear");
+      ->default_str("auto");
   command.add_option("--max-markers", parameters.max_markers, "More are not reported")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()))
       ->type_name("N")

@@ -32,6 +32,7 @@ Experiment artificial(std::string name, double min_tilt_deg, double max_tilt_deg
   experiment.camera = artificial_camera();
   experiment.imaging = {.black = 10, .white = 245, .floor = 178};
   experiment.diameter_m = 0.2;
+  experiment.peer_stride = 3;
   experiment.markers = 30;  // as many as the smallest of the id sets has
 
   Random random(derived_seed(20, static_cast<std::uint64_t>(max_tilt_deg)));

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "bench/accuracy/false_positives.hpp"
+#include "bench/accuracy/floor.hpp"
 #include "bench/accuracy/paper_experiments.hpp"
 #include "bench/accuracy/rank_tests.hpp"
 #include "bench/accuracy/reliability.hpp"
@@ -26,16 +27,17 @@ struct Options {
   std::string out, worst_file, false_folder;
   std::vector<std::string> only, sets;
   bool quick = false, with_sweeps = false, with_reliability = false, with_distractors = false;
-  bool no_sets = false;
+  bool no_sets = false, with_floor = false;
   std::size_t worst_count = 20;
   int jobs = 1;
 };
 
 constexpr int kQuickThinning = 10;
+constexpr int kFloorFrames = 300;
 constexpr int kSweepPoses = 200;
 constexpr int kReliabilityViews = 80'000;
 constexpr int kDistractors = 1500;                  // pictures of a kind
-constexpr int kSetBounds = 300, kSweepBounds = 50;  // views whose bound is worked out
+constexpr int kSetBounds = 150, kSweepBounds = 20;  // views whose bound is worked out
 
 template <typename Item>
 void keep(std::vector<Item>& items, const std::vector<std::string>& names, const char* what) {
@@ -152,11 +154,22 @@ void run_distractors(const Options& options) {
   write_false_positives(markdown, pictures, options.false_folder);
 }
 
+void run_floor(const Options& options) {
+  const int frames = kFloorFrames / (options.quick ? kQuickThinning : 1);
+  if (options.out.empty()) {
+    write_floor(std::cout, frames);
+    return;
+  }
+  auto markdown = open(std::filesystem::path(options.out) / "arena_2d.md");
+  write_floor(markdown, frames);
+}
+
 void report(const Options& options) {
   std::vector<Contender> contenders = all_contenders();
   keep(contenders, options.only, "contender");
   if (!options.out.empty()) std::filesystem::create_directories(options.out);
   if (!options.no_sets) run_sets(options, contenders);
+  if (options.with_floor) run_floor(options);
   if (options.with_sweeps) run_sweeps(options, contenders);
   if (options.with_reliability) run_reliability(options);
   if (options.with_distractors) run_distractors(options);
@@ -173,6 +186,7 @@ int main(int argc, char** argv) {
   app.add_option("--only", options.only, "contenders to run (default: all)")->delimiter(',');
   app.add_option("--sets", options.sets, "experiments to run (default: all)")->delimiter(',');
   app.add_flag("--quick", options.quick, "a tenth of the poses");
+  app.add_flag("--floor", options.with_floor, "the arena in 2D mode, too");
   app.add_flag("--sweeps", options.with_sweeps,
                "vary tilt, distance, noise, blur, gamma and size, too");
   app.add_flag("--reliability", options.with_reliability,

@@ -58,6 +58,7 @@ Experiment manipulator(std::string name, double distance_m, double noise_sigma, 
       .black = 35, .white = 210, .floor = 120, .blur_px = kBlur, .noise_sigma = noise_sigma};
   experiment.markers = kTiltSteps;
   experiment.continuous = true;
+  experiment.peer_stride = 4;
 
   std::uint64_t seed = 0;
   for (int row = 0; row < kTiltSteps; row += stride) {

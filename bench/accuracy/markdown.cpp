@@ -10,7 +10,8 @@ namespace {
 constexpr const char* kIntroduction = R"(# Accuracy
 
 See also: [is the probability of an id what it says?](reliability.md),
-[markers where there are none](false_markers.md), [speed](speed.md); all figures in accuracy.csv.
+[markers where there are none](false_markers.md), [the arena in 2D mode](arena_2d.md),
+[speed](speed.md); all figures in accuracy.csv.
 One thing varied at a time, with every system: [tilt](sweep-tilt.svg), [distance](sweep-distance.svg),
 [noise](sweep-noise.svg), [blur](sweep-blur.svg), [gamma](sweep-gamma.svg), [size](sweep-size.svg).
 
@@ -37,6 +38,8 @@ circular marker's outer black diameter.
   rounding to whole grey levels alone.
 - `roundel` is the detector on single pictures, `-track` the tracker, as the daemon runs it; `-whycon`
   are plain rings without a code, for which there is no φ. All with default parameters.
+- Peers take up to 0.3 s a picture, so they are shown a part of the same pictures: one in 3 of the artificial
+  poses, one in 4 of the manipulator's, one in 20 frames with 7 robots and in 10 with more, one in 4 of the sweeps.
 - AprilTag 3 (Debian's libapriltag): no decimation, one corrected bit, decision margin 30 or more,
   corners undistorted and moved by half a pixel. ArUco (Debian's OpenCV): 4x4, default settings, pose
   by IPPE_SQUARE; `-subpix` refines the corners within 0.6 cells.

@@ -4,6 +4,8 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "bench/accuracy/quade.hpp"
 
@@ -25,13 +27,15 @@ constexpr Metric kMetrics[] = {
 std::vector<std::vector<double>> blocks_of(const std::vector<const Result*>& systems,
                                            const Metric& metric) {
   std::vector<std::vector<double>> blocks;
-  const std::size_t count = systems.front()->verdicts.records.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> block;
-    for (const Result* system : systems) {
-      const Record& record = system->verdicts.records[i];
-      if (record.outcome == Outcome::kFound) block.push_back(metric.value(record));
+  // By view and marker: peers may have been shown a part of the views.
+  std::map<std::pair<int, int>, std::vector<double>> found;
+  for (const Result* system : systems) {
+    for (const Record& record : system->verdicts.records) {
+      if (record.outcome != Outcome::kFound) continue;
+      found[{record.view, record.number}].push_back(metric.value(record));
     }
+  }
+  for (auto& [marker, block] : found) {
     if (block.size() == systems.size()) blocks.push_back(std::move(block));
   }
   return blocks;

@@ -48,6 +48,7 @@ std::vector<Result> run(const Experiment& experiment, const Contender& contender
   for (int view = 0; view < std::ssize(experiment.views); ++view) {
     const View& shown = experiment.views[static_cast<std::size_t>(view)];
     if (!shown.judged() && !anyone_follows) continue;
+    if (contender.is_peer() && view % experiment.peer_stride != 0) continue;
     painter.paint(shown, picture);
     for (std::size_t i = 0; i < systems.size(); ++i) {
       if (!shown.judged() && !systems[i]->follows()) continue;

@@ -11,7 +11,8 @@ struct Result {
   const Experiment* experiment = nullptr;
   std::string system;
   bool has_yaw = true;
-  Verdicts verdicts;  // records in the order of views and markers, the same for every system
+  Verdicts verdicts;  // records in the order of views and markers; all of them, or those that peers
+                      // are shown
 };
 
 // Shows an experiment to a contender; one result a system. The Cramer-Rao bound is worked out for

@@ -30,6 +30,7 @@ Experiment experiment_of(const Setting& setting, int poses, std::uint64_t seed) 
   experiment.imaging = setting.imaging;
   experiment.diameter_m = setting.diameter_m;
   experiment.markers = 30;
+  experiment.peer_stride = 4;
 
   Random random(derived_seed(50, seed));
   const double plate = experiment.diameter_m * experiment.plate_ratio;

@@ -74,6 +74,7 @@ Experiment arena(std::string name, std::string title, const ArenaSetting& settin
   experiment.bits = setting.bits;
   experiment.response_known = setting.response_known;
   experiment.continuous = true;
+  experiment.peer_stride = setting.peer_stride;
 
   const ArenaOptions options = arena_options(experiment, setting);
   const Pose arena_in_camera = arena_in_ceiling_camera(options);

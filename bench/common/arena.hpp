@@ -21,7 +21,8 @@ struct ArenaSetting {
   bool srgb = false;    // the camera encodes its pictures as sRGB
   bool response_known = false;
   double exposure = 0.005;  // seconds
-  double speed = 0;         // every robot's, m/s; 0: as they happen to drive
+  int peer_stride = 1;
+  double speed = 0;  // every robot's, m/s; 0: as they happen to drive
 };
 
 // Robots with markers on a floor, seen from 3 m above through a webcam's lens at 30 frames a

@@ -15,6 +15,7 @@ struct Contender {
   std::string name;
   std::function<Print(const Experiment&)> print;
   std::function<Systems(const Experiment&)> systems;
+  bool is_peer() const { return !name.starts_with("roundel"); }
 };
 
 // Every contender that was built in, with its most accurate settings; Roundel's are first.

@@ -44,6 +44,7 @@ struct Experiment {
   int markers = 1;              // PlacedMarker::number < markers
   int bits = 8;                 // of WhyCode markers: enough for as many ids
   bool response_known = false;  // the camera's response curve is told to whoever can use it
+  int peer_stride = 1;          // peers are shown one in so many views: where they take long
   bool continuous = false;      // views follow each other as a camera would take them
   std::vector<SceneShape> clutter;
   std::vector<View> views;

@@ -27,5 +27,5 @@ TEST_CASE("a section's keys are listed in the file's order") {
   CHECK(keys_of_section("") ==
         "source, simulator, files, camera, marker, arena, detector, lcm, control");
   CHECK(keys_of_section("marker") ==
-        "diameter, bits, hamming, height, offset_x, offset_y, rotation, mounts");
+        "diameter, bits, hamming, inner_ratio, height, offset_x, offset_y, rotation, mounts");
 }

@@ -242,7 +242,7 @@ void check_derivatives(KernelCase c, AddPixels add_pixels) {
                         Case{kSlopeX, &PhotometricModel::slope_x, 0.01},
                         Case{kSlopeY, &PhotometricModel::slope_y, 0.01},
                         Case{kShift, &PhotometricModel::shift, 0.02},
-                        // What a stretch does to the corners of teeth is left out.
+                        // What a stretch does to the edges' profiles at corners is left out.
                         Case{kStretchU, &PhotometricModel::stretch_u, 0.02, false, 0.06},
                         Case{kStretchD, &PhotometricModel::stretch_d, 0.02, false, 0.06},
                         Case{kBlur, &PhotometricModel::blur, 0.02, true}}) {
@@ -263,10 +263,69 @@ TEST_CASE("the kernel's derivatives agree with finite differences") {
   check_derivatives(kernel_case(0, 0.3, 0.6), add_inner_pixels);
 }
 
+namespace {
+
+// As sharp as a pixel lets a picture be.
+KernelCase boxed_case(int halves, double low, double high) {
+  KernelCase c = kernel_case(halves, low, high);
+  c.model.boxed = true;
+  c.model.blur = 0.4F;
+  c.model.stretch_u = c.model.stretch_d = 0;
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("the derivatives of boxed edges agree with finite differences") {
+  check_derivatives(boxed_case(16, 0.9, 1.1), add_outer_pixels);
+  check_derivatives(boxed_case(16, 0.2, 0.75), add_inner_pixels);
+  check_derivatives(boxed_case(0, 0.3, 0.6), add_inner_pixels);
+}
+
+TEST_CASE("a boxed edge looks as the area that it covers of the pixels") {
+  KernelCase c = boxed_case(16, 0.97, 1.03);
+  c.model.blur = 0.2887F;  // nothing but the pixel
+  c.model.dark = 0;
+  c.model.contrast = 1;
+  c.model.shift = c.model.slope_x = c.model.slope_y = 0;
+  const auto radius = [&](double nx, double ny) {
+    std::array<double, 3> p{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = static_cast<double>(c.model.at[k]) + static_cast<double>(c.model.by_x[k]) * nx +
+             static_cast<double>(c.model.by_y[k]) * ny;
+    }
+    return std::hypot(p[0], p[1]) / p[2];
+  };
+  const auto& slope = c.model.pixel_slope;
+  for (std::size_t i = 0; i < c.x.size(); ++i) {
+    constexpr int kParts = 24;
+    int outside = 0;
+    for (int a = 0; a < kParts; ++a) {
+      for (int b = 0; b < kParts; ++b) {
+        const double du = (a + 0.5) / kParts - 0.5, dv = (b + 0.5) / kParts - 0.5;
+        const double nx = c.x[i] + slope[0] * du + slope[1] * dv;
+        const double ny = c.y[i] + slope[2] * du + slope[3] * dv;
+        if (radius(nx, ny) > 1) ++outside;
+      }
+    }
+    c.grey[i] = static_cast<float>(outside) / (kParts * kParts);
+  }
+  const auto rms = [&](bool boxed) {
+    c.model.boxed = boxed;
+    PhotometricSums sums;
+    add_outer_pixels(c.model, c.columns(), kCodeUnknowns, sums);
+    return std::sqrt(static_cast<double>(sums.squares) / static_cast<double>(c.x.size()));
+  };
+  CHECK(rms(true) < 0.005);
+  CHECK(rms(false) > 0.02);
+}
+
 TEST_CASE("vector units give the same sums to the bit") {
   for (const int unknowns : {int(kFollowedUnknowns), int(kCodeUnknowns)}) {
-    for (const bool inner : {false, true}) {
-      const KernelCase c = kernel_case(16, inner ? 0.2 : 0.85, inner ? 0.75 : 1.15);
+    for (int kind = 0; kind < 4; ++kind) {
+      const bool inner = kind % 2 == 1;
+      KernelCase c = kernel_case(16, inner ? 0.2 : 0.85, inner ? 0.75 : 1.15);
+      c.model.boxed = kind >= 2;
       PhotometricSums best, baseline;
       const AddPixels add = inner ? add_inner_pixels : add_outer_pixels;
       add(c.model, c.columns(), unknowns, best, VectorUnit::kBest);

@@ -1,0 +1,177 @@
+// What disturbs a marker in practice: it is still found, with its id, and the stated deviations are
+// not too small by more than half.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/detector.hpp"
+#include "core/necklace.hpp"
+#include "core/plane_projection.hpp"
+#include "core/tracker.hpp"
+#include "simulator/random.hpp"
+#include "simulator/renderer.hpp"
+
+namespace roundel {
+namespace {
+
+constexpr int kId = 5, kBits = 8;
+constexpr double kDegree = std::numbers::pi / 180;
+
+CameraModel camera() {
+  CameraModel camera;
+  camera.width = 320;
+  camera.height = 240;
+  camera.fx = camera.fy = 920;
+  camera.cx = 159.5;
+  camera.cy = 119.5;
+  return camera;
+}
+
+SceneMarker marker_at(const Eigen::Vector3d& centre, double incidence, double diameter_m) {
+  SceneMarker marker;
+  marker.bits = kBits;
+  marker.word = NecklaceCode(kBits, 1).word(kId).value();
+  marker.diameter_m = diameter_m;
+  const Eigen::Vector3d ray = -centre.normalized();
+  const Eigen::Vector3d axis = Eigen::AngleAxisd(0.8, ray) * ray.unitOrthogonal();
+  marker.pose = pose_from_circle({centre, Eigen::AngleAxisd(incidence, axis) * ray}, 0.6);
+  return marker;
+}
+
+Imaging usual_imaging() {
+  return {.black = 35, .white = 215, .floor = 120, .blur_px = 0.7, .noise_sigma = 3};
+}
+
+// A tracker's view of a marker that stands still, `usual` frames undisturbed before it is looked
+// at.
+struct Seen {
+  int frames = 0, found = 0, named = 0;
+  double squares = 0;  // of the position's errors over their deviations, mean of an axis
+};
+
+Seen look_at(const SceneMarker& marker, const Imaging& usual, const Imaging& disturbed,
+             const auto& disturb) {
+  DetectorParameters parameters;
+  parameters.diameter_m = marker.diameter_m;
+  Tracker tracker(parameters, camera());
+  const Renderer before(camera(), usual), now(camera(), disturbed);
+  Scene scene;
+  scene.markers.push_back(marker);
+  GreyImage image;
+  Seen seen;
+  for (std::uint64_t frame = 0; frame < 60; ++frame) {
+    const bool counts = frame >= 20;
+    (counts ? now : before).render(scene, frame, image);
+    if (counts) disturb(image);
+    const auto markers = tracker.track(image.view());
+    if (!counts) continue;
+    ++seen.frames;
+    if (markers.size() != 1) continue;
+    ++seen.found;
+    if (markers[0].id == kId) ++seen.named;
+    const Eigen::Vector3d error = markers[0].pose.position - marker.pose.position;
+    seen.squares += error.cwiseQuotient(markers[0].sigma_position).squaredNorm() / 3;
+  }
+  seen.squares /= std::max(1, seen.found);
+  return seen;
+}
+
+void no_disturbance(GreyImage&) {}
+
+void check_seen(const Seen& seen) {
+  CHECK(seen.found == seen.frames);
+  CHECK(seen.named == seen.frames);
+  MESSAGE("squares " << seen.squares);
+}
+
+const SceneMarker& usual_marker() {
+  static const SceneMarker marker = marker_at({0.011, -0.007, 2}, 25 * kDegree, 0.084);
+  return marker;
+}
+
+}  // namespace
+
+TEST_CASE("the edge of a shadow that crosses a marker does not lose it") {
+  for (const double angle : {0.0, 0.7, 1.6, 3.0, 4.4}) {
+    CAPTURE(angle);
+    Imaging shaded = usual_imaging();
+    shaded.shadow_factor = 0.4;
+    shaded.shadow_angle = angle;
+    const auto centre = camera().project(usual_marker().pose.position).value();
+    shaded.shadow_u = centre.x();
+    shaded.shadow_v = centre.y();
+    check_seen(look_at(usual_marker(), usual_imaging(), shaded, no_disturbance));
+  }
+}
+
+TEST_CASE("a light gradient across the picture does a marker no harm") {
+  Imaging slanted = usual_imaging();
+  slanted.gradient = 0.8;
+  const Seen seen = look_at(usual_marker(), usual_imaging(), slanted, no_disturbance);
+  check_seen(seen);
+  CHECK(seen.squares < 2.25);
+}
+
+TEST_CASE("a marker covered over a fifth of its outline is still found and named") {
+  // A bright strip over one side of the disc: 72 degrees of the outline.
+  const SceneMarker& marker = usual_marker();
+  const Eigen::Vector2d centre = camera().project(marker.pose.position).value();
+  const double radius = 0.5 * 920 * marker.diameter_m / 2;
+  for (const double grey : {30.0, 200.0}) {
+    CAPTURE(grey);
+    const Seen seen = look_at(marker, usual_imaging(), usual_imaging(), [&](GreyImage& image) {
+      for (int v = 0; v < image.height; ++v) {
+        for (int u = 0; u < image.width; ++u) {
+          if (u - centre.x() > radius * std::cos(36 * kDegree) && u - centre.x() < 1.5 * radius &&
+              std::abs(v - centre.y()) < 1.5 * radius) {
+            image.pixels[static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) +
+                         static_cast<std::size_t>(u)] = static_cast<std::uint8_t>(grey);
+          }
+        }
+      }
+    });
+    check_seen(seen);
+  }
+}
+
+TEST_CASE("too little and too much light leave a marker readable") {
+  for (const bool bright : {false, true}) {
+    CAPTURE(bright);
+    Imaging other = usual_imaging();
+    other.black = bright ? 90 : 6;
+    other.white = bright ? 255 : 40;
+    other.floor = bright ? 200 : 20;
+    check_seen(look_at(usual_marker(), other, other, no_disturbance));
+  }
+}
+
+TEST_CASE("markers from 14 to 200 pixels across are found, slanted by up to 70 degrees") {
+  for (const double diameter_px : {14.0, 20.0, 40.0, 100.0, 200.0}) {
+    for (const double incidence : {0.0, 40.0, 70.0}) {
+      if (diameter_px * std::cos(incidence * kDegree) < 13) continue;
+      CAPTURE(diameter_px);
+      CAPTURE(incidence);
+      const SceneMarker marker =
+          marker_at({0.011, -0.007, 1}, incidence * kDegree, diameter_px / 920);
+      const Seen seen = look_at(marker, usual_imaging(), usual_imaging(), no_disturbance);
+      CHECK(seen.found == seen.frames);
+      if (diameter_px >= 20) CHECK(seen.named == seen.frames);
+    }
+  }
+}
+
+TEST_CASE("a marker smeared by a third of its diameter stays on its track") {
+  SceneMarker marker = usual_marker();
+  Imaging imaging = usual_imaging();
+  imaging.exposure_s = 0.02;
+  marker.velocity = Eigen::Vector3d(0.8, 0.6, 0) * (marker.diameter_m / 3 / imaging.exposure_s);
+  Imaging sharp = usual_imaging();
+  sharp.exposure_s = 0;
+  const Seen seen = look_at(marker, sharp, imaging, no_disturbance);
+  CHECK(seen.found == seen.frames);
+}
+
+}  // namespace roundel
