@@ -22,6 +22,17 @@ std::optional<std::string> contents_of(const std::string& path) {
   return read_text_file(path);
 }
 
+// A damaged file must not push a whole one out of its place.
+std::optional<std::string> worth_keeping(const std::string& path) {
+  try {
+    std::optional<std::string> text = contents_of(path);
+    if (text) parse_arena_file(*text, path);
+    return text;
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::optional<ArenaCalibration> ArenaStore::load() const {
@@ -33,7 +44,7 @@ std::optional<ArenaCalibration> ArenaStore::load() const {
 // First the old one is copied away, then replaced: at every instant the file in use is whole.
 void ArenaStore::save(const ArenaCalibration& calibration) {
   const std::string text = format_arena_file(calibration);
-  const std::optional<std::string> old = contents_of(path_);
+  const std::optional<std::string> old = worth_keeping(path_);
   if (old) write_file_atomically(previous_path(), *old);
   write_file_atomically(path_, text);
 }
@@ -45,7 +56,7 @@ ArenaCalibration ArenaStore::restore() {
         fmt::format("{}: there is no calibration before the one in use", previous_path()));
   }
   const ArenaCalibration calibration = parse_arena_file(*previous, previous_path());
-  const std::optional<std::string> current = contents_of(path_);
+  const std::optional<std::string> current = worth_keeping(path_);
   write_file_atomically(path_, *previous);
   if (current) write_file_atomically(previous_path(), *current);
   return calibration;

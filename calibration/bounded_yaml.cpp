@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <yaml-cpp/eventhandler.h>
 
 #include <cerrno>
@@ -13,6 +14,8 @@
 
 namespace roundel {
 namespace {
+
+constexpr int kPatienceMs = 5000;  // with a pipe whose writer is slow
 
 class LimitExceeded : public YAML::ParserException {
   using ParserException::ParserException;
@@ -71,13 +74,16 @@ std::string read_text_file(const std::string& path, std::size_t max_bytes) {
   const auto fail = [&](const char* what) {
     throw std::runtime_error(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
   };
-  const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Of a pipe that nobody writes to, nothing is waited for.
+  const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file) fail("can't be opened");
   std::string text(max_bytes + 1, '\0');
   std::size_t size = 0;
   while (size < text.size()) {
     const ssize_t count = ::read(file.get(), text.data() + size, text.size() - size);
     if (count < 0 && errno == EINTR) continue;
+    pollfd more = {file.get(), POLLIN, 0};
+    if (count < 0 && errno == EAGAIN && ::poll(&more, 1, kPatienceMs) > 0) continue;
     if (count < 0) fail("can't be read");
     if (count == 0) break;
     size += static_cast<std::size_t>(count);

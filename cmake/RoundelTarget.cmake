@@ -1,5 +1,15 @@
 # One place for what every target of the project shares: the standard, the warnings, the sanitizers.
 
+# Reads headers once a target where sanitizers make every compilation dear. Elsewhere each source stands
+# alone, so that a missing include shows.
+function(roundel_precompile target)
+  if(ROUNDEL_SANITIZE)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    # For compiler caches.
+    target_compile_options(${target} PRIVATE -fpch-preprocess)
+  endif()
+endfunction()
+
 function(roundel_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
@@ -18,6 +28,8 @@ function(roundel_target target)
       target_compile_options(${target} PRIVATE -fno-sanitize-recover=undefined
         -fno-sanitize=null,alignment,vptr,object-size)
     endif()
+    roundel_precompile(${target} <Eigen/Geometry> <algorithm> <chrono> <cmath> <functional> <memory>
+      <optional> <span> <string> <vector>)
   endif()
 endfunction()
 
@@ -36,6 +48,7 @@ function(roundel_test name)
   # and take half the time to build.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} doctest::doctest)
+  roundel_precompile(${name} <doctest/doctest.h>)
   doctest_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
 endfunction()
 

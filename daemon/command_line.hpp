@@ -6,7 +6,7 @@
 
 #include "config/reader.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
 }
 

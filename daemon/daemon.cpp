@@ -96,9 +96,11 @@ int Daemon::run() {
   }
   service_.stopping();
   publish_status();
-  if (const std::string drops = parts_.source->explanation_of_drops(); !drops.empty()) {
-    log_info("{} frames tracked; {}", statistics_.frames(), drops);
-  }
+  const DropCounts drops = drops_of_session();
+  log_info(
+      "{} frames tracked; {} lost before they reached roundeld, {} left out for a newer one, {} "
+      "damaged, {} too old",
+      statistics_.frames(), drops.lost, drops.newer, drops.damaged, drops.stale);
   if (parts_.source->complete()) {
     log_info("ends");
     return 0;
@@ -128,7 +130,8 @@ bool Daemon::carry_frame() {
   const CapturedFrame frame = lease->frame();
   FrameTimes times;
   times.captured_us = frame.captured.mono_us;
-  times.arrived_us = now().mono_us;
+  times.arrived_us = frame.arrived_us;
+  times.readable_us = now().mono_us;
 
   if (frame.luma.width != information_.width || frame.luma.height != information_.height) {
     fit_tracker(frame.luma.width, frame.luma.height);
@@ -141,10 +144,10 @@ bool Daemon::carry_frame() {
   times.tracked_us = now().mono_us;
 
   information_.frame = frame.number;
-  information_.dropped = parts_.source->dropped() - dropped_before_session_;
+  information_.dropped = drops_of_session().total();
   information_.captured = frame.captured;
   information_.stamp_source = frame.stamp_source;
-  information_.tracking_us = static_cast<double>(times.tracked_us - times.arrived_us);
+  information_.tracking_us = static_cast<double>(times.tracked_us - times.readable_us);
   parts_.broadcast->publish(information_, markers, arena);
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
@@ -265,7 +268,12 @@ void Daemon::publish_status() {
   status_.session = information_.session;
   status_.utime = current.wall_us;
   status_.mono = current.mono_us;
-  status_.dropped = parts_.source->dropped() - dropped_before_session_;
+  const DropCounts drops = drops_of_session();
+  status_.dropped = drops.total();
+  status_.dropped_lost = drops.lost;
+  status_.dropped_newer = drops.newer;
+  status_.dropped_damaged = drops.damaged;
+  status_.dropped_stale = drops.stale;
   status_.unsent = parts_.broadcast->unsent_frames() - unsent_before_session_;
   const header_t header = to_message(information_);
   status_.width = header.width;
@@ -303,9 +311,13 @@ void Daemon::start(Parts parts) {
   summary_due_ = true;
 }
 
+DropCounts Daemon::drops_of_session() const {
+  return parts_.source->drops() - drops_before_session_;
+}
+
 void Daemon::begin_session() {
   information_.session = std::max(now().wall_us, information_.session + 1);
-  dropped_before_session_ = parts_.source->dropped();
+  drops_before_session_ = parts_.source->drops();
   unsent_before_session_ = parts_.broadcast->unsent_frames();
   statistics_.begin_session();
 }
@@ -384,7 +396,10 @@ std::string Daemon::try_to_reload() {
     const bool other_markers =
         touches({"marker.diameter", "marker.bits", "marker.hamming", "marker.inner_ratio"});
     const bool new_source = touches({"source"}) || touches(source_sections(values.source));
-    if (new_source) next.source = make_source(next.configuration);
+    if (new_source) {
+      next.source = make_source(next.configuration);
+      next.source->follow(*parts_.source);
+    }
     next.camera = make_camera(next.configuration, next.source ? *next.source : *parts_.source);
     const bool new_camera = !same_camera(next.camera, parts_.camera);
     const bool new_tracker = new_source || new_camera || other_markers || touches({"detector."});

@@ -64,6 +64,7 @@ class Daemon final : private LoopControl {
   void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
                       const LumaView* picture);
   void publish_status();
+  DropCounts drops_of_session() const;
   void tell_service_manager();
 
   Load load_;
@@ -74,7 +75,7 @@ class Daemon final : private LoopControl {
   Statistics statistics_;
   FrameInformation information_;  // of the last frame; the states hold in between
   status_t status_{};             // reused, so that its texts are not copied every second
-  std::int64_t dropped_before_session_ = 0;
+  DropCounts drops_before_session_;
   std::int64_t unsent_before_session_ = 0;
   bool told_of_other_resolution_ = false;
   bool summary_due_ = false;

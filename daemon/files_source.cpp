@@ -39,7 +39,9 @@ std::optional<FrameLease> FilesSource::next() {
     due_ns_ = std::max(due_ns_ + period_ns, current_ns);
   }
   timer_.arm(due_ns_);
-  return FrameLease(*this, 0, {image_.view(), next_number_++, now(), StampSource::kArrival});
+  const TimeStamp arrived = now();
+  return FrameLease(
+      *this, 0, {image_.view(), next_number_++, arrived, StampSource::kArrival, arrived.mono_us});
 }
 
 bool FilesSource::read_next() {

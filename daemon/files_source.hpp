@@ -28,7 +28,7 @@ class FilesSource final : public FrameSource {
   std::optional<FrameLease> next() override;
   std::int64_t due_ns() const override { return due_ns_; }
   CameraState state() const override { return state_; }
-  std::int64_t dropped() const override { return unreadable_; }
+  DropCounts drops() const override { return {.damaged = unreadable_}; }
   int width() const override { return image_.width; }
   int height() const override { return image_.height; }
   bool simulated() const override { return true; }

@@ -9,6 +9,7 @@
 
 #include "core/camera_model.hpp"
 #include "core/luma_view.hpp"
+#include "daemon/drop_counts.hpp"
 #include "transport/frame_information.hpp"
 
 namespace roundel {
@@ -19,6 +20,7 @@ struct CapturedFrame {
   std::int64_t number = 0;  // at its source, from 0; frames that were left out have numbers too
   TimeStamp captured;
   StampSource stamp_source = StampSource::kUnknown;
+  std::int64_t arrived_us = 0;  // at its source, before any decoding; CLOCK_MONOTONIC
 };
 
 class CameraControls;
@@ -64,13 +66,14 @@ class FrameSource {
   // at state(). The lease before must have ended.
   virtual std::optional<FrameLease> next() = 0;
 
-  // CLOCK_MONOTONIC, nanoseconds: if all is well, descriptor() is readable by then: for a frame, for
-  // another try to reach the camera, or because the camera is lost.
+  // CLOCK_MONOTONIC, nanoseconds: if all is well, descriptor() is readable by then: for a frame,
+  // for another try to reach the camera, or because the camera is lost.
   virtual std::int64_t due_ns() const = 0;
 
   virtual CameraState state() const = 0;
-  virtual std::int64_t dropped() const = 0;  // frames left out since the source was made
-  virtual int width() const = 0;             // of the frames, as far as it is known beforehand
+  virtual DropCounts drops() const = 0;  // frames left out since the source was made
+  std::int64_t dropped() const { return drops().total(); }
+  virtual int width() const = 0;  // of the frames, as far as it is known beforehand
   virtual int height() const = 0;
   virtual bool simulated() const = 0;  // no camera took these frames just now
   virtual std::string description() const = 0;
@@ -86,8 +89,8 @@ class FrameSource {
   virtual std::optional<CameraModel> camera() const { return std::nullopt; }
   // A camera's controls, for any thread; other sources have none.
   virtual std::shared_ptr<CameraControls> controls() const { return nullptr; }
-  // Why frames were left out, in words; empty: there is nothing to tell.
-  virtual std::string explanation_of_drops() const { return {}; }
+  // Takes over what the source before this one knew and still holds, before the first next().
+  virtual void follow(const FrameSource& /*before*/) {}
   // After state() is kEnded: whether everything could be read.
   virtual bool complete() const { return true; }
 

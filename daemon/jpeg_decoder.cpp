@@ -2,6 +2,7 @@
 
 #include <csetjmp>
 #include <cstdio>  // jpeglib.h needs it first
+#include <cstring>
 #include <new>
 
 #include <jpeglib.h>
@@ -13,6 +14,8 @@ namespace {
 
 // Bounds what a small file with a large header can make libjpeg allocate.
 constexpr long kMaxDecoderBytes = 2L << 30;
+
+constexpr int kMostScans = 100;  // ten are usual
 
 struct ErrorManager {
   jpeg_error_mgr base;  // first: libjpeg knows this part only
@@ -32,6 +35,14 @@ void on_message(j_common_ptr info, int level) {
   if (level < 0 && info->err->msg_code != JWRN_EXTRANEOUS_DATA) fail(info);
 }
 
+// Called between pieces of a picture of several scans.
+void on_progress(j_common_ptr info) {
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMostScans) return;
+  auto* errors = reinterpret_cast<ErrorManager*>(info->err);
+  std::strcpy(errors->message, "it has too many scans");
+  std::longjmp(errors->jump, 1);
+}
+
 }  // namespace
 
 // libjpeg must not be returned to after an error: out by longjmp. So no function that calls it owns
@@ -49,6 +60,8 @@ struct JpegDecoder::State {
   bool create() {
     if (setjmp(errors.jump) != 0) return false;  // NOLINT(cert-err52-cpp)
     jpeg_create_decompress(&info);
+    progress.progress_monitor = on_progress;
+    info.progress = &progress;
     info.mem->max_memory_to_use = kMaxDecoderBytes;
     return true;
   }
@@ -74,6 +87,7 @@ struct JpegDecoder::State {
   }
 
   ErrorManager errors = {};
+  jpeg_progress_mgr progress = {};
   jpeg_decompress_struct info = {};
 };
 
@@ -95,6 +109,9 @@ unsigned JpegDecoder::width() const {
 }
 unsigned JpegDecoder::height() const {
   return state_->info.image_height;
+}
+bool JpegDecoder::in_one_scan() const {
+  return jpeg_has_multiple_scans(&state_->info) == FALSE;
 }
 const char* JpegDecoder::message() const {
   return state_->errors.message;

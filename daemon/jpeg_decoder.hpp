@@ -7,7 +7,8 @@
 namespace roundel {
 
 // Decodes the luma of JPEG pictures, one after another. Colour is neither upsampled nor converted.
-// Whatever the bytes are, it ends; what is truncated or damaged is refused, not filled up with
+// Whatever the bytes are, it ends soon: every scan of a picture costs a pass over all of it, so
+// those with very many are refused. What is truncated or damaged is refused, not filled up with
 // grey. Pictures without Huffman tables, as in MJPEG, get the standard ones.
 class JpegDecoder {
  public:
@@ -23,6 +24,7 @@ class JpegDecoder {
 
   unsigned width() const;
   unsigned height() const;
+  bool in_one_scan() const;  // as all of MJPEG is
   const char* message() const;
 
  private:

@@ -26,7 +26,7 @@ std::optional<FrameLease> SimulatorSource::next() {
   const double elapsed_s = static_cast<double>(monotonic_ns() - start_ns_) / 1e9;
   const auto newest = static_cast<std::int64_t>(elapsed_s * arena_.options().frame_rate);
   const std::int64_t number = std::max(newest, last_frame_ + 1);
-  dropped_ += number - last_frame_ - 1;
+  left_out_ += number - last_frame_ - 1;
   last_frame_ = number;
   timer_.arm(instant_ns(number + 1));
 
@@ -38,7 +38,8 @@ std::optional<FrameLease> SimulatorSource::next() {
   const TimeStamp current = now();
   const std::int64_t captured_us = instant_ns(number) / kNsPerUs;
   const TimeStamp captured = {current.wall_us - (current.mono_us - captured_us), captured_us};
-  return FrameLease(*this, 0, {image_.view(), number, captured, StampSource::kMiddleOfExposure});
+  return FrameLease(
+      *this, 0, {image_.view(), number, captured, StampSource::kMiddleOfExposure, current.mono_us});
 }
 
 std::string SimulatorSource::description() const {

@@ -19,8 +19,10 @@ latency_t take(LatencyHistogram& histogram) {
 
 void Statistics::add(const FrameTimes& times, std::size_t markers) {
   arrival_.add(times.arrived_us - times.captured_us);
-  tracking_.add(times.tracked_us - times.arrived_us);
+  reading_.add(times.readable_us - times.arrived_us);
+  tracking_.add(times.tracked_us - times.readable_us);
   publishing_.add(times.published_us - times.tracked_us);
+  handling_.add(times.published_us - times.arrived_us);
   total_.add(times.published_us - times.captured_us);
   markers_ = markers;
   ++frames_;
@@ -38,8 +40,10 @@ void Statistics::report(TimeStamp current, status_t& status) {
   // Nothing is seen where nothing is looked at.
   status.markers = frames_since_report_ > 0 ? static_cast<std::int32_t>(markers_) : 0;
   status.arrival = take(arrival_);
+  status.reading = take(reading_);
   status.tracking = take(tracking_);
   status.publishing = take(publishing_);
+  status.handling = take(handling_);
   status.total = take(total_);
   frames_since_report_ = 0;
   last_us_ = current.mono_us;

@@ -12,6 +12,7 @@ namespace roundel {
 struct FrameTimes {
   std::int64_t captured_us = 0;
   std::int64_t arrived_us = 0;
+  std::int64_t readable_us = 0;  // decoded, where that is needed
   std::int64_t tracked_us = 0;
   std::int64_t published_us = 0;
 };
@@ -36,7 +37,7 @@ class Statistics {
   std::int64_t frames_ = 0;
   std::int64_t frames_since_report_ = 0;
   std::size_t markers_ = 0;
-  LatencyHistogram arrival_, tracking_, publishing_, total_;
+  LatencyHistogram arrival_, reading_, tracking_, publishing_, handling_, total_;
 };
 
 // What the kernel says about the wall clock.

@@ -11,8 +11,11 @@
 
 namespace roundel {
 
+enum class JpegScans : std::uint8_t { kOne, kOneForEachPlane, kProgressive };
+
 // A grey picture as a JPEG with colour planes, as cameras send it.
-inline std::vector<std::uint8_t> jpeg_bytes(const GreyImage& picture, int quality) {
+inline std::vector<std::uint8_t> jpeg_bytes(const GreyImage& picture, int quality,
+                                            JpegScans scans = JpegScans::kOne) {
   constexpr std::uint8_t kNoColour = 128;
   jpeg_error_mgr errors;
   jpeg_compress_struct info;
@@ -27,6 +30,13 @@ inline std::vector<std::uint8_t> jpeg_bytes(const GreyImage& picture, int qualit
   info.in_color_space = JCS_YCbCr;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, quality, TRUE);
+  if (scans == JpegScans::kProgressive) jpeg_simple_progression(&info);
+  static constexpr jpeg_scan_info kPlanes[] = {
+      {1, {0}, 0, 63, 0, 0}, {1, {1}, 0, 63, 0, 0}, {1, {2}, 0, 63, 0, 0}};
+  if (scans == JpegScans::kOneForEachPlane) {
+    info.scan_info = kPlanes;
+    info.num_scans = 3;
+  }
   jpeg_start_compress(&info, TRUE);
   std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(picture.width), kNoColour);
   while (info.next_scanline < info.image_height) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,7 +64,6 @@ std::string camera_text(const ListedCamera& camera) {
   std::string text;
   text += fmt::format("{}\n", describe(camera.information));
   for (const std::string& link : camera.information.links) text += fmt::format("  {}\n", link);
-  if (!camera.problem.empty()) text += fmt::format("  {}\n", camera.problem);
   if (!camera.formats.empty()) {
     text += fmt::format("\n  formats, driver {}\n", camera.information.driver);
     text += formats_text(camera.formats);
@@ -76,13 +76,14 @@ std::string camera_text(const ListedCamera& camera) {
 }
 
 ListedCamera look_at(const CameraInformation& information) {
-  ListedCamera camera{information, {}, {}, {}};
+  ListedCamera camera{information, {}, {}};
+  if (!information.problem.empty()) return camera;
   try {
     const std::unique_ptr<VideoDevice> device = kernel_cameras().open(information.node);
     camera.formats = offered_formats(*device, information.multiplanar);
     camera.controls = list_controls(*device);
   } catch (const CameraError& error) {  // unplugged in this moment
-    camera.problem = error.what();
+    camera.information.problem = error.what();
   }
   return camera;
 }
@@ -93,6 +94,10 @@ void list_cameras(bool json) {
     throw std::runtime_error(
         "there is no camera that can capture (is it plugged in? On a Raspberry Pi, see "
         "docs/guide/camera.md for cameras at the CSI connector)");
+  }
+  if (std::none_of(cameras.begin(), cameras.end(),
+                   [](const CameraInformation& camera) { return camera.problem.empty(); })) {
+    throw std::runtime_error(cameras.front().problem);
   }
   for (const CameraInformation& information : cameras) {
     const ListedCamera camera = look_at(information);

@@ -64,10 +64,11 @@ void run_controls(const ControlsOptions& options) {
 }  // namespace
 
 void add_controls(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "controls",
-      "Show or set the controls of the camera in use. What is set here lasts until roundeld ends; "
-      "camera.controls in its configuration lasts longer");
+  auto* command =
+      app.add_subcommand("controls",
+                         "Show or set the controls of the camera in use. What is set here lasts "
+                         "until roundeld ends or "
+                         "camera.controls in its configuration is changed, which lasts longer");
   const auto options = std::make_shared<ControlsOptions>();
   add_socket_option(*command, options->socket);
   command->add_option("NAME=VALUE", options->assignments, "What to set; nothing: show all");

@@ -31,7 +31,7 @@ Json camera_json(const ListedCamera& camera) {
                {"formats", Json::array()},     {"controls", Json::array()}};
   for (const OfferedFormat& format : camera.formats) json["formats"].push_back(format_json(format));
   for (const Control& control : camera.controls) json["controls"].push_back(control_json(control));
-  if (!camera.problem.empty()) json["problem"] = camera.problem;
+  if (!information.problem.empty()) json["problem"] = information.problem;
   return json;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "daemon/capture/camera_information.hpp"
@@ -10,12 +9,11 @@
 
 namespace roundel {
 
-// What `roundel cameras` tells about one.
+// What `roundel cameras` tells about one; no formats and controls where it has a problem.
 struct ListedCamera {
   CameraInformation information;
   std::vector<OfferedFormat> formats;
   std::vector<Control> controls;
-  std::string problem;  // why the two above are empty
 };
 
 nlohmann::ordered_json camera_json(const ListedCamera& camera);

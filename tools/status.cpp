@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 
 #include "daemon/json_fields.hpp"
@@ -48,10 +49,43 @@ std::string arena_text(const Json& arena) {
   return text;
 }
 
+std::string drops_text(const Json& drops) {
+  return fmt::format(
+      "{} lost before they reached roundeld, {} left out for a newer one, {} damaged, {} too old",
+      number_field(drops, "lost"), number_field(drops, "newer"), number_field(drops, "damaged"),
+      number_field(drops, "stale"));
+}
+
+// Stage by stage, of the frames of the last second.
+std::string latency_text(const Json& latency) {
+  struct Stage {
+    const char* name;
+    const char* meaning;
+  };
+  static constexpr std::array kStages = {Stage{"arrival", "from capture to roundeld"},
+                                         Stage{"reading", "decoding, where it is needed"},
+                                         Stage{"tracking", "to the markers"},
+                                         Stage{"publishing", "to the last message"},
+                                         Stage{"handling", "from roundeld to the last message"},
+                                         Stage{"total", "from capture to the last message"}};
+  if (number_field(field(latency, "total"), "max") == 0) {
+    return "latency      no frame in the last second\n";
+  }
+  std::string text = fmt::format("latency, ms  {:<10} {:>7} {:>7} {:>7} {:>7}\n", "", "50 %",
+                                 "90 %", "99 %", "max");
+  for (const Stage& stage : kStages) {
+    const Json& percentiles = field(latency, stage.name);
+    text += fmt::format("             {:<10}", stage.name);
+    for (const char* key : {"p50", "p90", "p99", "max"}) {
+      text += fmt::format(" {:>7.2f}", number_field(percentiles, key) / 1000);
+    }
+    text += fmt::format("  {}\n", stage.meaning);
+  }
+  return text;
+}
+
 std::string status_text(const Json& json) {
   const Json& camera = field(json, "camera");
-  const Json& latency = field(field(json, "latency_us"), "total");
-  const Json& tracking = field(field(json, "latency_us"), "tracking");
   std::string text = fmt::format("roundeld {}, running for {}\n", text_of(json, "version"),
                                  duration_text(number_field(json, "uptime_s")));
   text += fmt::format("camera       {}: {}\n", text_of(camera, "name"), text_of(camera, "source"));
@@ -63,11 +97,10 @@ std::string status_text(const Json& json) {
       "not sent\n",
       number_field(json, "frame_rate"), number_field(json, "markers"), number_field(json, "frames"),
       number_field(json, "dropped"), number_field(json, "unsent"));
-  text += fmt::format(
-      "latency      {:.1f} ms from capture to network (99 %: {:.1f} ms), {:.1f} ms of "
-      "it tracking\n",
-      number_field(latency, "p50") / 1000, number_field(latency, "p99") / 1000,
-      number_field(tracking, "p50") / 1000);
+  if (number_field(json, "dropped") > 0) {
+    text += fmt::format("dropped      {}\n", drops_text(field(json, "drops")));
+  }
+  text += latency_text(field(json, "latency_us"));
   text += fmt::format("arena        {}\n", arena_text(field(json, "arena")));
   text += fmt::format("clock        {}\n", text_of(json, "clock"));
   text += fmt::format("poses to     {}\n", text_of(field(json, "lcm"), "url"));

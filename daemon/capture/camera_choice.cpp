@@ -20,7 +20,7 @@ bool is_at(const CameraInformation& camera, const std::string& path) {
 }
 
 bool matches(const CameraInformation& camera, const CameraChoice& choice) {
-  return camera.card.find(choice.card) != std::string::npos &&
+  return camera.problem.empty() && camera.card.find(choice.card) != std::string::npos &&
          (choice.bus.empty() || camera.bus == choice.bus) &&
          (choice.serial.empty() || camera.serial == choice.serial);
 }
@@ -43,6 +43,7 @@ std::string rules(const CameraChoice& choice) {
 }  // namespace
 
 std::string describe(const CameraInformation& camera) {
+  if (!camera.problem.empty()) return fmt::format("{} ({})", camera.card, camera.problem);
   const std::string serial =
       camera.serial.empty() ? std::string() : fmt::format(", serial {}", camera.serial);
   return fmt::format("{} ({}, {}{})", camera.card, camera.node, camera.bus, serial);
@@ -56,7 +57,9 @@ CameraInformation choose_camera(const std::vector<CameraInformation>& cameras,
           : fmt::format("there {} {}", cameras.size() == 1 ? "is" : "are", list(cameras));
   if (!choice.device.empty()) {
     for (const CameraInformation& camera : cameras) {
-      if (is_at(camera, choice.device)) return camera;
+      if (!is_at(camera, choice.device)) continue;
+      if (!camera.problem.empty()) throw CameraError(camera.problem);
+      return camera;
     }
     throw CameraAbsent(fmt::format("no camera is at {}; {}", choice.device, others));
   }
@@ -65,7 +68,16 @@ CameraInformation choose_camera(const std::vector<CameraInformation>& cameras,
                [&](const CameraInformation& camera) { return matches(camera, choice); });
   const std::string rule = rules(choice);
   if (found.empty()) {
-    throw CameraAbsent(rule.empty() ? others : fmt::format("no camera has {}; {}", rule, others));
+    // One that can't be opened may be the one.
+    if (!cameras.empty() && rule.empty())
+      throw CameraError("no camera can be used: " + list(cameras));
+    const bool maybe =
+        std::any_of(cameras.begin(), cameras.end(),
+                    [](const CameraInformation& camera) { return !camera.problem.empty(); });
+    const std::string text =
+        rule.empty() ? others : fmt::format("no camera has {}; {}", rule, others);
+    if (maybe) throw CameraError(text);
+    throw CameraAbsent(text);
   }
   if (found.size() > 1 && !rule.empty()) {
     throw CameraError(fmt::format(
@@ -79,14 +91,20 @@ CameraInformation choose_camera(const std::vector<CameraInformation>& cameras,
 CameraInformation find_again(const std::vector<CameraInformation>& cameras,
                              const CameraInformation& before) {
   std::vector<CameraInformation> found;
+  std::string problem;
   for (const CameraInformation& camera : cameras) {
     const bool same_place = camera.bus == before.bus;
     if (camera.card != before.card || camera.serial != before.serial) continue;
+    if (!camera.problem.empty()) {
+      problem = camera.problem;
+      continue;
+    }
     if (same_place) return camera;
     if (!before.serial.empty()) found.push_back(camera);
   }
   // Twins may share a serial number, too.
   if (found.size() == 1) return found.front();
+  if (!problem.empty()) throw CameraError(problem);
   if (cameras.empty()) throw CameraAbsent(fmt::format("{} is not there", describe(before)));
   throw CameraError(fmt::format(
       "{} is not there; there is {}, which is not taken instead (restart roundeld to choose anew)",

@@ -25,7 +25,9 @@ Control CameraControls::set(const std::string& name, const std::string& value) {
   const std::unique_ptr<VideoDevice> device = open();
   const Control control = find_control(list_controls(*device), name);
   const int error = set_control(*device, control, parse_control_value(control, value));
-  if (error != 0) throw CameraError(fmt::format("{}: can't be set: {}", name, reason_of(error)));
+  if (error != 0) {
+    throw CameraError(fmt::format("{}: can't be set: {}", name, refusal_of_control(error)));
+  }
   if (control.type != Control::Type::kButton) {
     const std::lock_guard lock(mutex_);
     wanted_[name] = value;

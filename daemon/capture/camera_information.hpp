@@ -14,6 +14,8 @@ struct CameraInformation {
   std::string serial;              // USB cameras; empty: unknown
   std::string driver;
   bool multiplanar = false;
+  std::string problem;  // why it can't be opened; then node, links, card and serial are all that is
+                        // known, and that it can capture is not
 };
 
 // Which camera to take. Without any rule it is the first.
@@ -22,12 +24,15 @@ struct CameraChoice {
   std::string card = {};    // part of the name; each of these may be empty
   std::string bus = {};
   std::string serial = {};
+
+  bool operator==(const CameraChoice&) const = default;
 };
 
 // "Name (/dev/video0, usb-0000:00:14.0-1, serial 1234)"
 std::string describe(const CameraInformation& camera);
 
-// Throws CameraAbsent if there is none, CameraError if rules leave more than one.
+// Throws CameraAbsent if there is none, CameraError if rules leave more than one or it can't be
+// opened.
 CameraInformation choose_camera(const std::vector<CameraInformation>& cameras,
                                 const CameraChoice& choice);
 

@@ -19,16 +19,16 @@ constexpr std::int64_t kLongestPauseNs = 2'000'000'000;
 // Cameras need a while for their first frame.
 constexpr std::int64_t kStartPatienceNs = 3'000'000'000;
 constexpr double kPatienceFrames = 4;
+constexpr double kLongestPatienceS = 60;  // however slow its driver says that it is
+constexpr int kMostEvents = 16;           // taken at once; a driver that never ends is not followed
 // A larger step in the driver's numbers is no gap but nonsense.
 constexpr std::uint32_t kLargestGap = 100'000;
 
-void add_to_poll(int poll, int descriptor, std::uint32_t events) {
+bool add_to_poll(int poll, int descriptor, std::uint32_t events) {
   epoll_event event{};
   event.events = events;
   event.data.fd = descriptor;
-  if (::epoll_ctl(poll, EPOLL_CTL_ADD, descriptor, &event) != 0) {
-    throw std::system_error(errno, std::generic_category(), "epoll");
-  }
+  return ::epoll_ctl(poll, EPOLL_CTL_ADD, descriptor, &event) == 0;
 }
 
 // What has happened to the camera itself, from the events of its descriptor.
@@ -55,10 +55,20 @@ CameraSource::CameraSource(const CameraParameters& parameters, const CameraSyste
       system_(system),
       controls_(std::make_shared<CameraControls>(system, parameters.controls)),
       poll_(::epoll_create1(EPOLL_CLOEXEC)) {
-  if (!poll_) throw std::system_error(errno, std::generic_category(), "epoll");
-  add_to_poll(poll_.get(), watch_.descriptor(), EPOLLIN);
-  add_to_poll(poll_.get(), timer_.descriptor(), EPOLLIN);
+  if (!poll_ || !add_to_poll(poll_.get(), watch_.descriptor(), EPOLLIN) ||
+      !add_to_poll(poll_.get(), timer_.descriptor(), EPOLLIN)) {
+    throw std::system_error(errno, std::generic_category(), "epoll");
+  }
   retry_at(monotonic_ns());
+}
+
+void CameraSource::follow(const FrameSource& before) {
+  const auto* const other = dynamic_cast<const CameraSource*>(&before);
+  if (other == nullptr) return;
+  if (parameters_.choice == other->parameters_.choice) before_ = other->before_;
+  if (parameters_.controls == other->parameters_.controls) {
+    controls_->replace(other->controls_->wanted());
+  }
 }
 
 std::optional<FrameLease> CameraSource::next() {
@@ -141,18 +151,22 @@ void CameraSource::watch_stream() {
   v4l2_event_subscription subscription{};
   subscription.type = V4L2_EVENT_SOURCE_CHANGE;
   camera_->device->control(VIDIOC_SUBSCRIBE_EVENT, &subscription);  // few drivers know it
-  add_to_poll(poll_.get(), camera_->device->descriptor(), EPOLLIN | EPOLLPRI);
+  if (!add_to_poll(poll_.get(), camera_->device->descriptor(), EPOLLIN | EPOLLPRI)) {
+    throw CameraError(fmt::format("{}: its driver has no way to wait for frames",
+                                  describe(camera_->information)));
+  }
   timer_.arm(camera_->last_frame_ns + patience_ns());
 }
 
 bool CameraSource::format_changed() {
-  bool changed = false;
   v4l2_event event{};
-  while (camera_->device->control(VIDIOC_DQEVENT, &event) == 0) {
-    changed |= event.type == V4L2_EVENT_SOURCE_CHANGE &&
-               (event.u.src_change.changes & V4L2_EVENT_SRC_CH_RESOLUTION) != 0;
+  for (int i = 0; i < kMostEvents && camera_->device->control(VIDIOC_DQEVENT, &event) == 0; ++i) {
+    if (event.type == V4L2_EVENT_SOURCE_CHANGE &&
+        (event.u.src_change.changes & V4L2_EVENT_SRC_CH_RESOLUTION) != 0) {
+      return true;
+    }
   }
-  return changed;
+  return false;
 }
 
 // While a camera is lost the log hears no more, but for one that is there and can't be used.
@@ -199,7 +213,7 @@ void CameraSource::schedule_retry() {
 std::int64_t CameraSource::patience_ns() const {
   if (!camera_->any_frame) return kStartPatienceNs;
   const double rate = camera_->mode.frame_rate;
-  const double frames_s = rate > 0 ? kPatienceFrames / rate : 0;
+  const double frames_s = rate > 0 ? std::min(kLongestPatienceS, kPatienceFrames / rate) : 0;
   return static_cast<std::int64_t>(1e9 * std::max(parameters_.timeout_s, frames_s));
 }
 
@@ -209,10 +223,12 @@ void CameraSource::check_silence() {
   const std::int64_t due_ns = camera_->last_frame_ns + patience_ns();
   if (monotonic_ns() < due_ns) {
     timer_.arm(due_ns);
-  } else {
-    throw CameraError(
-        fmt::format("no frame for {:.1f} s", static_cast<double>(patience_ns()) / 1e9));
+    return;
   }
+  const std::string damaged =
+      camera_->damaged > 0 ? fmt::format(", but {} damaged ones", camera_->damaged) : "";
+  throw CameraError(
+      fmt::format("no frame for {:.1f} s{}", static_cast<double>(patience_ns()) / 1e9, damaged));
 }
 
 std::optional<FrameLease> CameraSource::take_newest(bool broken) {
@@ -228,6 +244,7 @@ std::optional<FrameLease> CameraSource::take_newest(bool broken) {
     const std::int64_t its_number = number_of(*buffer, later_);
     if (buffer->bytes.empty()) {
       ++later_.damaged;
+      ++camera_->damaged;
       stream.give_back(buffer->index);
       continue;
     }
@@ -249,7 +266,7 @@ std::int64_t CameraSource::number_of(const FilledBuffer& buffer, DropCounts& dro
   if (camera_->sequence) {
     const std::uint32_t step = buffer.sequence - *camera_->sequence;  // modulo 2^32, as it wraps
     if (step > 1 && step <= kLargestGap) {
-      drops.driver += step - 1;
+      drops.lost += step - 1;
       next_number_ += step - 1;
     }
   }
@@ -274,12 +291,13 @@ std::optional<FrameLease> CameraSource::lend(const FilledBuffer& buffer, std::in
   if (!in_use) camera_->stream->give_back(buffer.index);
   if (!luma) {
     ++counts_.damaged;
+    ++camera_->damaged;
     return std::nullopt;
   }
   note_frame();
   constexpr int kNone = -1;
   return FrameLease(*this, in_use ? buffer.index : kNone,
-                    {*luma, number, time->captured, time->source});
+                    {*luma, number, time->captured, time->source, arrived.mono_us});
 }
 
 void CameraSource::give_back(int buffer) {
@@ -288,6 +306,7 @@ void CameraSource::give_back(int buffer) {
 
 void CameraSource::note_frame() {
   camera_->last_frame_ns = monotonic_ns();
+  camera_->damaged = 0;
   if (camera_->any_frame) return;
   camera_->any_frame = true;
   before_ = camera_->information;  // one that never gave a frame may be replaced by another
@@ -327,12 +346,6 @@ std::string CameraSource::crop() const {
   const Crop& crop = parameters_.mode.crop;
   if (crop.empty()) return {};
   return fmt::format("{}x{} from ({}, {})", crop.width, crop.height, crop.left, crop.top);
-}
-
-std::string CameraSource::explanation_of_drops() const {
-  return fmt::format(
-      "{} lost before they reached roundeld, {} left out for a newer one, {} damaged, {} too old",
-      counts_.driver, counts_.newer, counts_.damaged, counts_.stale);
 }
 
 }  // namespace roundel

@@ -11,7 +11,6 @@
 #include "daemon/capture/camera_mode.hpp"
 #include "daemon/capture/capture_stream.hpp"
 #include "daemon/capture/device_watch.hpp"
-#include "daemon/capture/drop_counts.hpp"
 #include "daemon/capture/frame_clock.hpp"
 #include "daemon/frame_source.hpp"
 #include "daemon/monotonic_timer.hpp"
@@ -42,8 +41,7 @@ class CameraSource final : public FrameSource {
   }
   CameraState state() const override { return state_; }
   std::string_view waits_because() const override { return reason_; }
-  std::int64_t dropped() const override { return counts_.total(); }
-  std::string explanation_of_drops() const override;
+  DropCounts drops() const override { return counts_; }
   int width() const override { return camera_ ? camera_->reader.width() : 0; }
   int height() const override { return camera_ ? camera_->reader.height() : 0; }
   bool simulated() const override { return false; }
@@ -52,8 +50,9 @@ class CameraSource final : public FrameSource {
   std::string identity() const override;
   std::string crop() const override;
   std::shared_ptr<CameraControls> controls() const override { return controls_; }
-
-  const DropCounts& drop_counts() const { return counts_; }
+  // Chosen by the same rules, it is the same camera; controls that were set while it ran stay set
+  // as long as the configuration's are the same.
+  void follow(const FrameSource& before) override;
 
  private:
   // Everything that is thrown away with a lost camera; what is set up later goes first.
@@ -66,6 +65,7 @@ class CameraSource final : public FrameSource {
     FrameClock clock;
     std::optional<std::uint32_t> sequence;  // of the last buffer
     std::int64_t last_frame_ns = 0;         // or of the start of the stream
+    std::int64_t damaged = 0;               // frames since then
     bool any_frame = false;
   };
 

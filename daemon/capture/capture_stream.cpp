@@ -8,6 +8,17 @@
 #include <cerrno>
 
 namespace roundel {
+namespace {
+
+// Drivers may say anything; what is no time at all becomes one that nobody believes.
+std::int64_t microseconds(const timeval& time) {
+  constexpr std::int64_t kSecond = 1'000'000, kMostSeconds = INT64_MAX / kSecond - 1, kNoTime = -1;
+  const auto seconds = std::int64_t{time.tv_sec}, rest = std::int64_t{time.tv_usec};
+  if (seconds < 0 || seconds > kMostSeconds || rest < 0 || rest >= kSecond) return kNoTime;
+  return seconds * kSecond + rest;
+}
+
+}  // namespace
 
 // With one plane or several, what is needed of a v4l2_buffer is in other places.
 struct CaptureStream::Exchange {
@@ -117,8 +128,7 @@ std::optional<FilledBuffer> CaptureStream::dequeue() {
   FilledBuffer filled;
   filled.index = static_cast<int>(index);
   filled.sequence = exchange.buffer.sequence;
-  filled.stamp.mono_us = std::int64_t{exchange.buffer.timestamp.tv_sec} * 1'000'000 +
-                         exchange.buffer.timestamp.tv_usec;
+  filled.stamp.mono_us = microseconds(exchange.buffer.timestamp);
   filled.stamp.flags = exchange.buffer.flags;
   const std::size_t begin = exchange.data_offset(), end = exchange.bytes_used();
   const std::span<const std::uint8_t> memory = buffers_[index].memory;

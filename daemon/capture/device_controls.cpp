@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <stdexcept>
 
@@ -34,8 +35,10 @@ std::string name_from(const std::string& label) {
   return name;
 }
 
-Control::Type type_of(std::uint32_t type) {
-  switch (type) {
+Control::Type type_of(const v4l2_query_ext_ctrl& query) {
+  // Arrays and structures have no single value.
+  if ((query.flags & V4L2_CTRL_FLAG_HAS_PAYLOAD) != 0) return Control::Type::kOther;
+  switch (query.type) {
     case V4L2_CTRL_TYPE_INTEGER:
     case V4L2_CTRL_TYPE_INTEGER64:
     case V4L2_CTRL_TYPE_BITMASK:
@@ -75,8 +78,9 @@ bool has_value(const Control& control) {
 
 std::vector<Control::MenuItem> menu_of(VideoDevice& device, const v4l2_query_ext_ctrl& query) {
   std::vector<Control::MenuItem> items;
-  const std::int64_t last = std::min(query.maximum, query.minimum + kMostMenuItems);
-  for (std::int64_t index = std::max<std::int64_t>(0, query.minimum); index <= last; ++index) {
+  const std::int64_t first = std::clamp<std::int64_t>(query.minimum, 0, UINT32_MAX);
+  const std::int64_t last = std::min<std::int64_t>(query.maximum, first + kMostMenuItems);
+  for (std::int64_t index = first; index <= last; ++index) {
     v4l2_querymenu item{};
     item.id = query.id;
     item.index = static_cast<std::uint32_t>(index);
@@ -163,7 +167,7 @@ std::vector<Control> list_controls(VideoDevice& device) {
       control.id = query.id;
       control.label = driver_text(query.name);
       control.name = name_from(control.label);
-      control.type = type_of(query.type);
+      control.type = type_of(query);
       control.wide = query.type == V4L2_CTRL_TYPE_INTEGER64;
       control.minimum = query.minimum;
       control.maximum = query.maximum;
@@ -239,6 +243,20 @@ int set_control(VideoDevice& device, const Control& control, std::int64_t wanted
   return device.control(VIDIOC_S_EXT_CTRLS, &request);
 }
 
+std::string refusal_of_control(int error) {
+  switch (error) {
+    case EACCES:
+      return "the camera does not allow it now (read-only, or an automatic owns it)";
+    case EBUSY:
+      return "the camera does not allow it while it streams";
+    case ERANGE:
+    case EINVAL:
+      return "the camera does not take this value";
+    default:
+      return reason_of(error);
+  }
+}
+
 std::vector<std::string> apply_controls(VideoDevice& device, const ControlValues& wanted) {
   std::vector<std::string> remarks;
   if (wanted.empty()) return remarks;
@@ -262,7 +280,8 @@ std::vector<std::string> apply_controls(VideoDevice& device, const ControlValues
   for (const Setting& setting : settings) {
     const int error = set_control(device, setting.control, setting.value);
     if (error == 0) continue;
-    remarks.push_back(fmt::format("{}: can't be set: {}", setting.control.name, reason_of(error)));
+    remarks.push_back(
+        fmt::format("{}: can't be set: {}", setting.control.name, refusal_of_control(error)));
     failed.push_back(setting.control.name);
   }
   // Read back when all are set: one may have changed another.

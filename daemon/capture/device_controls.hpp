@@ -50,6 +50,8 @@ const Control& find_control(const std::vector<Control>& controls, const std::str
 
 // 0, or errno.
 int set_control(VideoDevice& device, const Control& control, std::int64_t value);
+// What that errno means to its user.
+std::string refusal_of_control(int error);
 
 // Sets controls, automatics first, and reads them back. What is not as wanted, a sentence for each.
 std::vector<std::string> apply_controls(VideoDevice& device, const ControlValues& wanted);

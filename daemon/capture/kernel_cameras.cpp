@@ -21,11 +21,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const fs::path kClass = "/sys/class/video4linux";
+
 // Non-blocking, so that taking frames never waits.
 UniqueFd open_node(const std::string& node) {
   UniqueFd descriptor(::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
-  if (!descriptor) throw CameraError(fmt::format("{}: {}", node, reason_of(errno)));
-  return descriptor;
+  if (descriptor) return descriptor;
+  const int error = errno;
+  const std::string text = fmt::format("{}: {}", node, reason_of(error));
+  if (error == ENOENT || error == ENODEV || error == ENXIO) throw CameraAbsent(text);
+  throw CameraError(text);
 }
 
 template <typename Call>
@@ -86,15 +91,18 @@ class ConvertedDevice final : public VideoDevice {
   int descriptor_ = -1;
 };
 
+std::string first_line(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return printable(line.substr(0, 256));
+}
+
 // The USB device is the parent of the interface that the driver sits on.
 std::string serial_of(const std::string& name) {
   std::error_code error;
-  const fs::path interface = fs::canonical("/sys/class/video4linux/" + name + "/device", error);
-  if (error) return {};
-  std::ifstream file(interface.parent_path() / "serial");
-  std::string serial;
-  std::getline(file, serial);
-  return printable(serial.substr(0, 256));
+  const fs::path interface = fs::canonical(kClass / name / "device", error);
+  return error ? std::string() : first_line(interface.parent_path() / "serial");
 }
 
 std::vector<std::string> links_to(const fs::path& node) {
@@ -116,7 +124,7 @@ std::vector<int> node_numbers() {
   constexpr std::string_view kPrefix = "video";
   std::vector<int> numbers;
   std::error_code error;
-  for (fs::directory_iterator entry("/sys/class/video4linux", error), end; !error && entry != end;
+  for (fs::directory_iterator entry(kClass, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename();
     int number = 0;
@@ -133,16 +141,21 @@ class KernelCameras final : public CameraSystem {
  public:
   std::vector<CameraInformation> cameras() const override {
     std::vector<CameraInformation> found;
-    std::string refusal;
     for (const int number : node_numbers()) {
       const std::string name = fmt::format("video{}", number);
       CameraInformation camera;
       camera.node = "/dev/" + name;
+      camera.serial = serial_of(name);
       v4l2_capability capability{};
       try {
         if (KernelDevice(camera.node).control(VIDIOC_QUERYCAP, &capability) != 0) continue;
-      } catch (const CameraError& error) {  // gone meanwhile, or not ours to open
-        refusal = error.what();
+      } catch (const CameraAbsent&) {  // gone meanwhile
+        continue;
+      } catch (const CameraError& error) {
+        camera.card = first_line(kClass / name / "name");
+        camera.problem = error.what();
+        camera.links = links_to(camera.node);
+        found.push_back(std::move(camera));
         continue;
       }
       // Of the node itself: the metadata node of an USB camera can't capture pictures.
@@ -155,11 +168,9 @@ class KernelCameras final : public CameraSystem {
       camera.card = driver_text(capability.card);
       camera.bus = driver_text(capability.bus_info);
       camera.driver = driver_text(capability.driver);
-      camera.serial = serial_of(name);
       camera.links = links_to(camera.node);
       found.push_back(std::move(camera));
     }
-    if (found.empty() && !refusal.empty()) throw CameraError(refusal);
     return found;
   }
   std::unique_ptr<VideoDevice> open(const std::string& node) const override {

@@ -115,6 +115,7 @@ std::optional<LumaView> LumaReader::decode(std::span<const std::uint8_t> frame) 
   const auto width = static_cast<std::uint64_t>(layout_.width);
   const auto height = static_cast<std::uint64_t>(layout_.height);
   if (decoder_->width() != width || decoder_->height() != height) return std::nullopt;
+  if (!decoder_->in_one_scan()) return std::nullopt;  // no camera's; takes long to decode
   image_.resize(layout_.width, layout_.height);
   if (!decoder_->read_luma(image_.pixels.data())) return std::nullopt;
   const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(crop_.top) * layout_.width + crop_.left;

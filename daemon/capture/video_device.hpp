@@ -44,8 +44,7 @@ class VideoDevice {
 class CameraSystem {
  public:
   virtual ~CameraSystem() = default;
-  // Those that can capture, in the order of their numbers. Throws CameraError where there are some,
-  // but none may be opened.
+  // Those that can capture, or that can't be opened, in the order of their numbers.
   virtual std::vector<CameraInformation> cameras() const = 0;
   // Both throw CameraError.
   virtual std::unique_ptr<VideoDevice> open(const std::string& node) const = 0;

@@ -62,7 +62,8 @@ std::string keys_part(std::string_view yaml) {
     part.paragraph(line.before);
     if (!has_value) continue;
     const std::string value = line.code.substr(line.code.find_first_not_of(' ', colon + 1));
-    items.add(line.indentation == 0 ? name : section + "." + name, value, line.comment);
+    items.add(line.indentation == 0 ? name : fmt::format("{}.{}", section, name), value,
+              line.comment);
   }
   items.end();
   return part.text();

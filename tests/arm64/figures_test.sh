@@ -4,13 +4,18 @@
 set -euo pipefail
 here=$1
 shift
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+"$here" film >"$work/film"
 
 echo "== kernels"
-"$here" kernels | tee /dev/stderr | diff - <("$@" kernels)
+"$here" kernels <"$work/film" | tee "$work/kernels"
+"$@" kernels <"$work/film" | diff "$work/kernels" -
 
 echo "== poses"
 # Numbers are pixels, metres and parts of a quaternion.
-paste -d ' ' <("$here" poses) <("$@" poses) | awk -v most=1e-9 '
+"$here" poses <"$work/film" >"$work/poses"
+"$@" poses <"$work/film" | paste -d ' ' "$work/poses" - | awk -v most=1e-9 '
   {
     half = NF / 2
     if (NF != 24) { print "line " NR ": a marker is missing: " $0; bad = 1; exit }

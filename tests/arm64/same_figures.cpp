@@ -1,7 +1,8 @@
 // Prints what the vector units and the tracker make of fixed input, for ./dev arm64 to hold the
 // figures of two processors against each other.
-//   same_figures kernels   checksums: they are the same to the bit
-//   same_figures poses     of a simulated film; sine and logarithm differ in the last digit
+//   same_figures film > FILM      frames of the simulated arena
+//   same_figures kernels < FILM   checksums: they are the same to the bit
+//   same_figures poses < FILM     as they are tracked
 
 #include <fmt/format.h>
 
@@ -32,7 +33,6 @@ class Checksum {
     }
   }
   void add(int value) { add(static_cast<std::uint32_t>(value)); }
-  void add(std::uint8_t value) { add(std::uint32_t{value}); }
   void add(float value) { add(std::bit_cast<std::uint32_t>(value)); }
   std::uint64_t sum() const { return sum_; }
 
@@ -99,41 +99,63 @@ std::uint64_t sums_of(VectorUnit unit) {
   return checksum.sum();
 }
 
+// Frames of the simulated arena, which the other modes read: the same pictures for everybody.
+constexpr int kFrames = 8;
+
+void write_film() {
+  Arena arena(ArenaOptions{});
+  GreyImage picture;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    arena.render(frame, picture);
+    if (std::fwrite(picture.pixels.data(), 1, picture.pixels.size(), stdout) !=
+        picture.pixels.size()) {
+      throw std::runtime_error("the film can't be written");
+    }
+  }
+}
+
+void read_frame(const CameraModel& camera, GreyImage& picture) {
+  picture.resize(camera.width, camera.height);
+  if (std::fread(picture.pixels.data(), 1, picture.pixels.size(), stdin) != picture.pixels.size()) {
+    throw std::runtime_error("the film ends too early");
+  }
+}
+
 void print_kernels() {
   fmt::print("sums, best vector unit: {:016x}\n", sums_of(VectorUnit::kBest));
   fmt::print("sums, baseline: {:016x}\n", sums_of(VectorUnit::kBaseline));
 
-  Arena arena(ArenaOptions{});
   GreyImage picture;
+  read_frame(Arena(ArenaOptions{}).camera(), picture);
   RowScanner scanner;
-  Checksum pixels, seeds;
-  arena.render(0, picture);
-  for (const std::uint8_t pixel : picture.pixels) pixels.add(pixel);
+  Checksum seeds;
+  int count = 0;
   for (int v = 0; v + 1 < picture.height; v += 2) {
     for (const Seed& seed : scanner.scan(picture.view(), v, 0, picture.width - 1, 20, 1200)) {
       for (const int x : {seed.u, seed.v, seed.bright_u, seed.threshold, seed.extent}) seeds.add(x);
+      ++count;
     }
   }
-  fmt::print("simulated picture: {:016x}\n", pixels.sum());
-  fmt::print("seeds: {:016x}\n", seeds.sum());
+  fmt::print("{} seeds: {:016x}\n", count, seeds.sum());
 }
 
 void print_poses() {
-  ArenaOptions options;
-  Arena arena(options);
+  const ArenaOptions options;
+  const CameraModel camera = Arena(options).camera();
   DetectorParameters parameters;
   parameters.diameter_m = options.diameter_m;
-  Tracker tracker(parameters, arena.camera());
+  Tracker tracker(parameters, camera);
   GreyImage picture;
-  for (int frame = 0; frame < 8; ++frame) {
-    arena.render(frame, picture);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    read_frame(camera, picture);
     for (const Marker& marker : tracker.track(picture.view())) {
       const auto& p = marker.pose.position;
       const auto& q = marker.pose.orientation;
-      fmt::print(
-          "{} {} {} {:.15g} {:.15g} {:.15g} {:.15g} {:.15g} {:.15g} {:.15g} {:.15g} {:.15g}\n",
-          frame, marker.track, marker.id, marker.u, marker.v, p.x(), p.y(), p.z(), q.w(), q.x(),
-          q.y(), q.z());
+      fmt::print("{} {} {}", frame, marker.track, marker.id);
+      for (const double x : {marker.u, marker.v, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) {
+        fmt::print(" {:.17g}", x);
+      }
+      fmt::print("\n");
     }
   }
 }
@@ -144,12 +166,14 @@ void print_poses() {
 int main(int argc, char** argv) {
   const std::string what = argc == 2 ? argv[1] : "";
   try {
-    if (what == "kernels") {
+    if (what == "film") {
+      roundel::write_film();
+    } else if (what == "kernels") {
       roundel::print_kernels();
     } else if (what == "poses") {
       roundel::print_poses();
     } else {
-      throw std::invalid_argument("say kernels or poses");
+      throw std::invalid_argument("say film, kernels or poses");
     }
   } catch (const std::exception& error) {
     fmt::print(stderr, "same_figures: {}\n", error.what());

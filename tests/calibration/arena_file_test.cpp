@@ -171,6 +171,22 @@ TEST_CASE("the store keeps the calibration before, and brings it back") {
   CHECK(store.restore().date == "two");
 }
 
+TEST_CASE("a damaged calibration is replaced, and does not push out the one before it") {
+  const TemporaryDirectory folder;
+  ArenaStore store(folder.file("arena.yaml"));
+  store.save(sample("one"));
+  store.save(sample("two"));
+  for (const std::string& damaged : {std::string("width: ["), std::string(1 << 20, 'x')}) {
+    folder.write("arena.yaml", damaged);
+    store.save(sample("three"));
+    CHECK(store.load()->date == "three");
+    folder.write("arena.yaml", damaged);
+    CHECK(store.restore().date == "one");
+    CHECK(store.load()->date == "one");
+    folder.write("arena.yaml", damaged);
+  }
+}
+
 TEST_CASE("killed at any system call of saving, the store has a whole calibration") {
   const ArenaCalibration first = sample("first"), second = sample("second"),
                          third = sample("third");

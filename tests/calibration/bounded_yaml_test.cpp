@@ -2,8 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
 #include <string>
 
+#include "calibration/unique_fd.hpp"
 #include "tests/error_of.hpp"
 #include "tests/temporary_directory.hpp"
 
@@ -62,6 +67,21 @@ TEST_CASE("a file that can't be read is an error that names it") {
   CHECK(error_of([] { read_text_file("/nonexistent/a.yaml"); }) ==
         "/nonexistent/a.yaml: can't be opened: No such file or directory");
   CHECK(error_of([] { read_text_file("/"); }) == "/: can't be read: Is a directory");
+  CHECK(error_of([] { read_text_file("/dev/zero"); }).find("too large") != std::string::npos);
+}
+
+TEST_CASE("a pipe that nobody writes to is empty, and one that somebody writes to is read") {
+  const TemporaryDirectory folder;
+  const std::string path = folder.file("pipe");
+  REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
+  CHECK(read_text_file(path).empty());
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  const UniqueFd reading(ends[0]);
+  UniqueFd writing(ends[1]);
+  REQUIRE(::write(writing.get(), "a: 1\n", 5) == 5);
+  writing.reset();
+  CHECK(read_text_file("/dev/fd/" + std::to_string(reading.get())) == "a: 1\n");
 }
 
 TEST_CASE("empty YAML is a null node") {

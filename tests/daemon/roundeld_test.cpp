@@ -1,5 +1,6 @@
 // roundeld as a robot and as systemd see it: a process that gets signals and sends LCM multicast.
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -196,5 +197,40 @@ TEST_CASE("a recording is sent frame by frame to its end") {
     REQUIRE(frame->header.frame == number);
     CHECK(frame->header.calibration_state == header_t::CALIBRATION_NONE);
   }
+  CHECK(daemon.wait(kPatience) == 0);
+}
+
+// Nothing that could be a camera is at a pipe, and opening one would hang.
+TEST_CASE("roundeld waits for a camera that is not there, through reloads, and ends at SIGTERM") {
+  if (!multicast_is_private()) return;
+  constexpr int kPort = 7708;
+  const TemporaryDirectory folder;
+  const std::string pipe = folder.file("pipe");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const auto config = [&](const std::string& more) {
+    return "source: camera\ncamera: {device: " + pipe + more + "}\nlcm: {url: \"" + url(kPort) +
+           "\"}\ncontrol: {socket: \"\"}\n";
+  };
+  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  ChildProcess daemon(command(folder.write("roundel.yaml", config(""))));
+  REQUIRE(daemon.wait_for("no camera is at " + pipe, kPatience));
+  folder.write("roundel.yaml", config(", controls: {gain: 3}"));
+  daemon.signal(SIGHUP);
+  REQUIRE(daemon.wait_for("reloaded: camera.controls changed", kPatience));
+  folder.write("roundel.yaml", config(", format: MJPG"));
+  daemon.signal(SIGHUP);
+  REQUIRE(daemon.wait_for("reloaded: camera.format, camera.controls changed", kPatience));
+  REQUIRE(daemon.wait_for("no camera is at " + pipe, kPatience));
+  folder.write("roundel.yaml", config(", format: PINK"));
+  daemon.signal(SIGHUP);
+  REQUIRE(daemon.wait_for("the configuration in use stays", kPatience));
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!subscriber.status() && std::chrono::steady_clock::now() < deadline) {
+    CHECK(subscriber.next_frame(1s) == nullptr);
+  }
+  REQUIRE(subscriber.status().has_value());
+  CHECK(subscriber.status()->camera_state == header_t::CAMERA_STARTING);
+  CHECK(subscriber.status()->width == 0);
+  daemon.signal(SIGTERM);
   CHECK(daemon.wait(kPatience) == 0);
 }

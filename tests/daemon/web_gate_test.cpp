@@ -1,9 +1,14 @@
 #include "daemon/control/web_gate.hpp"
 
+#include <arpa/inet.h>
 #include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 
+#include "daemon/control/http_server.hpp"
 #include "daemon/control/web_page.hpp"
 #include "daemon/control/web_socket.hpp"
 #include "tests/error_of.hpp"
@@ -143,4 +148,40 @@ TEST_CASE("a port that is taken is told") {
   const std::string port = first.url.substr(17, first.url.size() - 18);
   CHECK(has(error_of([&] { listen_for_web(*parse_web_address("127.0.0.1:" + port)); }),
             "Address already in use"));
+}
+
+TEST_CASE("what a browser sends over TCP reaches the gate, and its answer the browser") {
+  WebSocket socket = listen_for_web(*parse_web_address("127.0.0.1:0"));
+  const int port = std::stoi(socket.url.substr(17));
+  const WebGate closed = gate(kToken);
+  const HttpServer server(
+      std::move(socket.descriptor),
+      [&](const HttpRequest& request) { return closed.handle(request); },
+      [] { return HttpEvent(); }, {});
+  const auto ask = [port](const std::string& line, const std::string& headers) {
+    const UniqueFd client(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) ==
+            0);
+    const std::string text = line + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" +
+                             headers + "Content-Length: 0\r\n\r\n";
+    REQUIRE(::send(client.get(), text.data(), text.size(), MSG_NOSIGNAL) ==
+            static_cast<ssize_t>(text.size()));
+    std::string answer;
+    std::array<char, 4096> buffer{};
+    for (ssize_t n = 0; (n = ::recv(client.get(), buffer.data(), buffer.size(), 0)) > 0;) {
+      answer.append(buffer.data(), static_cast<std::size_t>(n));
+    }
+    return answer;
+  };
+  CHECK(has(ask("GET /v1/status", ""), "401 Unauthorized"));
+  CHECK(has(ask("GET /v1/status", "Authorization: Bearer " + kToken + "\r\n"), "200 OK"));
+  CHECK(has(ask("GET /v1/status", "Cookie: a=b; roundel_token=" + kToken + "\r\n"), "200 OK"));
+  CHECK(has(ask("GET /?token=" + kToken, ""), "Set-Cookie: roundel_token=" + kToken));
+  CHECK(has(ask("POST /v1/reload",
+                "Origin: http://evil.example\r\nCookie: roundel_token=" + kToken + "\r\n"),
+            "403 Forbidden"));
 }

@@ -19,8 +19,9 @@ std::vector<std::string> command(const TemporaryDirectory& folder, const CameraM
                                  std::vector<std::string> settings) {
   const std::string lens = folder.file("camera.yaml");
   write_camera_file(lens, {"lab", camera});
-  settings.insert(settings.end(), {"source=camera", "control.socket=",
-                                   std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
+  settings.insert(settings.end(),
+                  {"source=camera", "control.socket=" + folder.file("control.sock"),
+                   "control.group=", std::string("lcm.url=") + kUrl, "camera.calibration=" + lens});
   std::vector<std::string> words = {ROUNDELD_BINARY};
   for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
   return words;
@@ -87,17 +88,21 @@ const std::string& DaemonUnderTest::log() {
   return process_.errors();
 }
 
+bool DaemonUnderTest::has_logged(const std::string& text) {
+  return receive(2000, [&] { return log().find(text) != std::string::npos; });
+}
+
 int DaemonUnderTest::descriptors() const {
   const std::string folder = fmt::format("/proc/{}/fd", process_.pid());
   return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-long DaemonUnderTest::resident_kb() const {
+long DaemonUnderTest::memory_kb(const std::string& kind) const {
   std::ifstream status(fmt::format("/proc/{}/status", process_.pid()));
   std::string word;
   long kb = 0;
   while (status >> word) {
-    if (word == "VmRSS:") status >> kb;
+    if (word == kind) status >> kb;
   }
   return kb;
 }

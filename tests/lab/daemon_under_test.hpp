@@ -40,11 +40,17 @@ class DaemonUnderTest {
 
   ChildProcess& process() { return process_; }
   const std::string& log();  // so far
-  bool has_logged(const std::string& text) { return log().find(text) != std::string::npos; }
+  // Within two seconds: some lines come after the frame that they are about.
+  bool has_logged(const std::string& text);
+  std::string socket() const { return folder_.file("control.sock"); }
   int descriptors() const;
-  long resident_kb() const;
+  // Of its memory: all that is resident, or only what is its own, without files and shared memory.
+  long resident_kb() const { return memory_kb("VmRSS:"); }
+  long anonymous_kb() const { return memory_kb("RssAnon:"); }
 
  private:
+  long memory_kb(const std::string& kind) const;
+
   const Film& film_;
   TemporaryDirectory folder_;
   Subscriber subscriber_;

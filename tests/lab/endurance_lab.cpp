@@ -23,7 +23,7 @@ TEST_CASE("streaming for long drops nothing unexplained, and memory stays as it 
   DaemonUnderTest daemon(film, {"camera.frame_rate=15"});
   REQUIRE(daemon.poses_arrive(kPatienceMs));
   daemon.receive(2000);
-  const long resident_kb = daemon.resident_kb();
+  const long resident_kb = daemon.resident_kb(), anonymous_kb = daemon.anonymous_kb();
   const int descriptors = daemon.descriptors();
   const std::int64_t first = daemon.frames().back().header.frame;
   const std::int64_t sent = camera.frames_sent();
@@ -36,16 +36,22 @@ TEST_CASE("streaming for long drops nothing unexplained, and memory stays as it 
     CHECK(fault_in(daemon.frames()) == "");
     last = daemon.frames().back().header.frame;
     dropped = daemon.frames().back().header.dropped;
+    if (second % 60 == 59) {
+      report(fmt::format("after {} s: {} kB resident, {} kB of them its own", second + 1,
+                         daemon.resident_kb(), daemon.anonymous_kb()));
+    }
   }
   const std::int64_t taken = last - first;
   CHECK(received + dropped == taken);
   CHECK(std::abs(camera.frames_sent() - sent - taken) <= 2);
+  CHECK(daemon.anonymous_kb() <= anonymous_kb + 64);
   CHECK(daemon.resident_kb() <= resident_kb + 100);
   CHECK(daemon.descriptors() == descriptors);
-  report(fmt::format(
-      "{} s: {} frames sent by the camera, {} published, {} dropped; resident {} kB, "
-      "then {} kB",
-      seconds, camera.frames_sent() - sent, received, dropped, resident_kb, daemon.resident_kb()));
+  report(
+      fmt::format("{} s: {} frames sent by the camera, {} published, {} dropped; resident {} kB, "
+                  "then {} kB, its own {} kB, then {} kB",
+                  seconds, camera.frames_sent() - sent, received, dropped, resident_kb,
+                  daemon.resident_kb(), anonymous_kb, daemon.anonymous_kb()));
   daemon.process().signal(SIGTERM);
   CHECK(daemon.process().wait(std::chrono::seconds(5)) == 0);
   const std::string& log = daemon.log();

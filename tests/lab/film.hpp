@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/grey_image.hpp"
-#include "core/marker.hpp"
 #include "simulator/arena.hpp"
 
 namespace roundel {
@@ -16,8 +16,11 @@ namespace roundel {
 class Film {
  public:
   // The arena's picture has 640x480 pixels and four robots.
-  explicit Film(int pictures);
-  // The one that all tests share.
+  static Film made(int pictures);
+  // Making it takes long in the virtual machine: it is made outside, and read there.
+  static Film read(const std::string& path);
+  void write(const std::string& path) const;
+  // The one that all tests share, in the file that ROUNDEL_LAB_FILM names.
   static const Film& shared();
 
   int pictures() const { return static_cast<int>(pictures_.size()); }
@@ -41,8 +44,10 @@ class Film {
   std::optional<Match> match(std::span<const Seen> seen) const;
 
  private:
+  Film() = default;
+
   std::vector<GreyImage> pictures_;
-  std::vector<std::vector<Marker>> direct_;  // of the n-th picture shown, forward and backward
+  std::vector<std::vector<Seen>> direct_;  // of the n-th picture shown, forward and backward
   CameraModel camera_;
 };
 

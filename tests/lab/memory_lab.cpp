@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <linux/videodev2.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -22,28 +24,48 @@ using namespace roundel;
 namespace {
 
 constexpr int kPatienceMs = 20'000;
-constexpr int kFrames = 60;
+constexpr int kFrames = 30;
 
-// The kernel's own word on what lies at an address: the file whose mapping holds it.
-std::string mapped_file(const void* address) {
-  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);) {
-    std::istringstream words(line);
-    std::uintptr_t begin = 0, end = 0;
-    char dash = 0;
-    words >> std::hex >> begin >> dash >> end;
-    if (wanted < begin || wanted >= end) continue;
-    const std::size_t path = line.find('/');
-    return path == std::string::npos ? "" : line.substr(path);
+// The mappings of the camera's memory in this process, in the kernel's own words.
+class CameraMappings {
+ public:
+  CameraMappings() {
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) {
+      if (!line.ends_with("/dev/video0")) continue;
+      std::istringstream words(line);
+      Range& range = ranges_.emplace_back();
+      char dash = 0;
+      words >> std::hex >> range.begin >> dash >> range.end;
+    }
   }
-  return "";
-}
+
+  // Whether all of a picture lies in one of them.
+  bool hold(const LumaView& luma) const {
+    const auto first = reinterpret_cast<std::uintptr_t>(luma.data);
+    const auto last = reinterpret_cast<std::uintptr_t>(
+        &luma.row(luma.height - 1)[(luma.width - 1) * luma.pixel_stride]);
+    return std::any_of(ranges_.begin(), ranges_.end(), [&](const Range& range) {
+      return first >= range.begin && last < range.end;
+    });
+  }
+
+ private:
+  struct Range {
+    std::uintptr_t begin = 0, end = 0;
+  };
+  std::vector<Range> ranges_;
+};
 
 bool same_pixels(const LumaView& luma, const GreyImage& picture) {
   if (luma.width != picture.width || luma.height != picture.height) return false;
   for (int v = 0; v < luma.height; ++v) {
     const std::uint8_t* const expected = picture.view().row(v);
+    if (luma.pixel_stride == 1) {
+      if (std::memcmp(luma.row(v), expected, static_cast<std::size_t>(luma.width)) != 0)
+        return false;
+      continue;
+    }
     for (int u = 0; u < luma.width; ++u) {
       if (luma.at(u, v) != expected[u]) return false;
     }
@@ -77,16 +99,15 @@ long check_in_place(const std::string& name, const CameraParameters& parameters,
   LcmSettings lcm;
   Broadcast broadcast(lcm, "lab");
   LatencyHistogram dequeue_to_publish;
+  std::optional<CameraMappings> mappings;  // there are some when the stream has been started
   long allocations = 0;
   const auto carry = [&](bool count) {
     std::optional<FrameLease> lease = wait_for_frame(source);
     REQUIRE(lease.has_value());
     const LumaView& luma = lease->frame().luma;
-    CHECK(mapped_file(luma.data) == "/dev/video0");
-    CHECK(mapped_file(&luma.row(luma.height - 1)[(luma.width - 1) * luma.pixel_stride]) ==
-          "/dev/video0");
+    if (!mappings) mappings.emplace();
+    CHECK(mappings->hold(luma));
     if (shows_film && !count) CHECK(is_of_film(luma, film));
-    const std::int64_t checked_us = now().mono_us;
     const AllocationCounter counter;
     const std::span<const Marker> markers = tracker.track(luma);
     lease->give_back();
@@ -95,11 +116,11 @@ long check_in_place(const std::string& name, const CameraParameters& parameters,
     broadcast.publish(information, markers);
     if (count) {
       allocations += counter.count();
-      dequeue_to_publish.add(now().mono_us - checked_us);
+      dequeue_to_publish.add(now().mono_us - lease->frame().arrived_us);
     }
   };
-  // Every picture of the film twice, forward and backward: then all memory has grown.
-  for (int i = 0; i < 2 * film.period(); ++i) carry(false);
+  // Every picture of the film, forward and backward: then all memory has grown.
+  for (int i = 0; i < (shows_film ? film.period() : kFrames); ++i) carry(false);
   for (int i = 0; i < kFrames; ++i) carry(true);
   report(
       fmt::format("{}: read in place; dequeue to publish 50 % {:.0f} us, 90 % {:.0f} us, 99 % "

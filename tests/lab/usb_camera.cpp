@@ -13,6 +13,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "daemon/capture/video_device.hpp"
 #include "tests/lab/usb_pictures.hpp"
 #include "transport/clock.hpp"
 
@@ -62,6 +63,12 @@ std::span<const std::uint8_t> bytes_of(const Header& header) {
   return {reinterpret_cast<const std::uint8_t*>(header.data()), sizeof(header)};
 }
 
+bool is_known_as(const std::string& serial) {
+  const std::vector<CameraInformation> cameras = kernel_cameras().cameras();
+  return std::any_of(cameras.begin(), cameras.end(),
+                     [&](const CameraInformation& camera) { return camera.serial == serial; });
+}
+
 }  // namespace
 
 UsbCamera::UsbCamera(const Film& film, UsbCameraDescription description, int port)
@@ -84,6 +91,10 @@ UsbCamera::UsbCamera(const Film& film, UsbCameraDescription description, int por
 
 UsbCamera::~UsbCamera() {
   unplug();
+  // The kernel takes its time; whoever comes next must not find this one.
+  for (int attempt = 0; attempt < 500 && is_known_as(description_.serial); ++attempt) {
+    ::usleep(10'000);
+  }
   perform([this] { stop_ = true; });
   thread_.join();
 }

@@ -113,6 +113,16 @@ TEST_CASE("roundeld stands every fault that vivid can inject") {
   camera.set("percentage_of_dropped_buffers", 0);
   check_loss_and_return(daemon, "no frames", start_us, end_us);
 
+  // A signal that changes is another picture: the stream is started anew.
+  daemon.forget();
+  const std::int64_t changed_us = now().mono_us;
+  camera.set("dv_timings_signal_mode", 1);  // none
+  daemon.receive(500);
+  const std::int64_t restored_us = now().mono_us;
+  camera.set("dv_timings_signal_mode", 0);
+  check_loss_and_return(daemon, "no signal", changed_us, restored_us);
+  CHECK(daemon.has_logged("its picture format has changed"));
+
   // Numbers and stamps that wrap do no harm. They begin with the next stream.
   camera.set("wrap_sequence_number", 1);
   camera.set("wrap_timestamp", 2);

@@ -17,25 +17,40 @@ std::string failure_of(const std::string& command) {
   return finished.status == 0 ? "" : fmt::format("{}: {}", command, finished.errors);
 }
 
+// In a network of its own, which lives as long as a process that does nothing in it.
+std::unique_ptr<ChildProcess> keeper(std::string& reason) {
+  auto process = std::make_unique<ChildProcess>(std::vector<std::string>{
+      "/usr/bin/unshare", "-n", "/bin/sh", "-c", "echo there; exec sleep 1000"});
+  if (!process->wait_for("there", std::chrono::seconds(20))) {
+    reason = "unshare -n: " + process->errors();
+  }
+  return process;
+}
+
 }  // namespace
 
 std::optional<Hosts> Hosts::make(int count, std::string& reason) {
   Hosts hosts;
-  reason = failure_of("ip link add switch type bridge mcast_snooping 0; ip link set switch up");
+  reason.clear();
+  hosts.switch_ = keeper(reason);
+  const auto run = [&](const std::string& commands) {
+    if (reason.empty()) reason = failure_of(commands);
+  };
+  run(
+      fmt::format("nsenter -n -t {} sh -ec 'ip link add switch type bridge mcast_snooping 0; "
+                  "ip link set switch up'",
+                  hosts.switch_->pid()));
   for (int host = 0; host < count && reason.empty(); ++host) {
-    hosts.keepers_.push_back(std::make_unique<ChildProcess>(std::vector<std::string>{
-        "/usr/bin/unshare", "-n", "/bin/sh", "-c", "echo there; exec sleep 1000"}));
-    ChildProcess& keeper = *hosts.keepers_.back();
-    if (!keeper.wait_for("there", std::chrono::seconds(20))) {
-      reason = "unshare -n: " + keeper.errors();
-      break;
-    }
-    reason = failure_of(fmt::format(
-        "ip link add port{0} type veth peer name eth0 netns {1}; ip link set port{0} master switch "
-        "up; "
-        "nsenter -n -t {1} sh -ec 'ip link set lo up; ip addr add 10.77.0.{2}/24 dev eth0; "
+    hosts.keepers_.push_back(keeper(reason));
+    const int pid = hosts.keepers_.back()->pid();
+    run(fmt::format(
+        "nsenter -n -t {1} sh -ec 'ip link add port{0} type veth peer name eth0 netns {2}; "
+        "ip link set port{0} master switch up'",
+        host, hosts.switch_->pid(), pid));
+    run(fmt::format(
+        "nsenter -n -t {} sh -ec 'ip link set lo up; ip addr add 10.77.0.{}/24 dev eth0; "
         "ip link set eth0 up; ip route add 239.0.0.0/8 dev eth0'",
-        host, keeper.pid(), host + 1));
+        pid, host + 1));
   }
   if (!reason.empty()) return std::nullopt;
   return hosts;

@@ -12,7 +12,7 @@
 namespace roundel {
 
 // Machines on one switch: network namespaces, each with a cable (veth) to a bridge, an address and
-// a route for multicast. The bridge is in the network of the test, which must be private.
+// a route for multicast. Nothing is added to the network that the test runs in.
 class Hosts {
  public:
   // Nothing if the kernel does not let us; `reason` says why.
@@ -24,7 +24,7 @@ class Hosts {
   std::thread thread_on(int host, std::function<void()> work) const;
 
  private:
-  // Each host lives as long as a process that does nothing in it.
+  std::unique_ptr<ChildProcess> switch_;
   std::vector<std::unique_ptr<ChildProcess>> keepers_;
 };
 

@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -14,10 +15,11 @@ namespace {
 const CameraInformation kFirst = {"/dev/video0", {"/dev/v4l/by-id/usb-A", "/dev/v4l/by-path/1"},
                                   "HD Webcam",   "usb-1",
                                   "A1",          "uvcvideo",
-                                  false};
+                                  false,         ""};
 const CameraInformation kTwin = {
-    "/dev/video2", {"/dev/v4l/by-path/2"}, "HD Webcam", "usb-2", "A2", "uvcvideo", false};
-const CameraInformation kNameless = {"/dev/video4", {}, "Sensor", "platform:csi", "", "csi", true};
+    "/dev/video2", {"/dev/v4l/by-path/2"}, "HD Webcam", "usb-2", "A2", "uvcvideo", false, ""};
+const CameraInformation kNameless = {"/dev/video4", {},   "Sensor", "platform:csi", "",
+                                     "csi",         true, ""};
 const std::vector<CameraInformation> kAll = {kFirst, kTwin, kNameless};
 
 std::string chosen(const CameraChoice& choice) {
@@ -80,4 +82,37 @@ TEST_CASE("without a serial number, or with one that twins share, the place deci
   CameraInformation third = same_serial;
   third.bus = "usb-3";
   CHECK_THROWS_AS(find_again({same_serial, third}, kFirst), CameraError);
+}
+
+TEST_CASE("of a camera that can't be opened it is told why, whoever asks for it") {
+  CameraInformation locked;
+  locked.node = "/dev/video6";
+  locked.card = "Locked";
+  locked.serial = "L1";
+  locked.problem = "/dev/video6: permission denied";
+  const std::string by_node = error_of([&] {
+    choose_camera({kFirst, locked}, {.device = "/dev/video6"});
+  });
+  CHECK(by_node == "/dev/video6: permission denied");
+  CHECK(choose_camera({locked, kFirst}, {}).node == "/dev/video0");
+  CHECK(contains(error_of([&] { choose_camera({locked}, {}); }), "permission denied"));
+  CHECK(contains(error_of([&] {
+                   choose_camera({kFirst, locked}, {.card = "Locked"});
+                 }),
+                 "permission denied"));
+  CameraInformation before = locked;
+  before.problem.clear();
+  CHECK(error_of([&] {
+          find_again({kFirst, locked}, before);
+        }) == "/dev/video6: permission denied");
+}
+
+TEST_CASE("what is no camera is not opened, but named") {
+  const TemporaryDirectory folder;
+  const std::string pipe = folder.file("pipe");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  for (const std::string& path : {pipe, folder.write("file", "text"), folder.file(""),
+                                  std::string("/dev/null"), std::string("relative")}) {
+    CHECK(contains(error_of([&] { chosen({.device = path}); }), "no camera is at " + path));
+  }
 }

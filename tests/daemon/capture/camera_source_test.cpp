@@ -6,43 +6,10 @@
 #include <cerrno>
 
 #include "tests/allocation_counter.hpp"
-#include "tests/daemon/capture/fake_camera.hpp"
-#include "tests/daemon/wait_for_descriptor.hpp"
+#include "tests/daemon/capture/camera_rig.hpp"
 #include "transport/clock.hpp"
 
 using namespace roundel;
-
-namespace {
-
-constexpr int kTimeoutMs = 10'000;
-
-std::optional<FrameLease> wait_for_frame(CameraSource& source) {
-  for (int i = 0; i < 50; ++i) {
-    if (!wait_for_descriptor(source.descriptor(), kTimeoutMs)) return std::nullopt;
-    if (std::optional<FrameLease> lease = source.next()) return lease;
-  }
-  return std::nullopt;
-}
-
-// Opens the camera; no frame has been delivered.
-void open(CameraSource& source, const FakeCamera& camera) {
-  const int starts = camera.state().starts;
-  while (camera.state().starts == starts) {
-    REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
-    REQUIRE_FALSE(source.next().has_value());
-  }
-}
-
-// Looks after the source until its camera is in a state.
-bool reaches(CameraSource& source, CameraState state) {
-  for (int i = 0; i < 50 && source.state() != state; ++i) {
-    if (!wait_for_descriptor(source.descriptor(), kTimeoutMs)) return false;
-    source.next();
-  }
-  return source.state() == state;
-}
-
-}  // namespace
 
 TEST_CASE("a frame is lent where the driver put it, and goes back when it is done with") {
   FakeCamera camera;
@@ -74,7 +41,7 @@ TEST_CASE("the newest of several frames is taken, the others go back at once and
   REQUIRE(lease.has_value());
   CHECK(lease->frame().number == 2);
   CHECK(source.dropped() == 2);
-  CHECK(source.drop_counts().newer == 2);
+  CHECK(source.drops().newer == 2);
   CHECK(camera.state().queued.size() == 3);
 }
 
@@ -88,7 +55,7 @@ TEST_CASE("numbers that the driver leaves out are drops, also where its numbers 
   auto lease = wait_for_frame(source);
   REQUIRE(lease.has_value());
   CHECK(lease->frame().number == 3);
-  CHECK(source.drop_counts().driver == 2);
+  CHECK(source.drops().lost == 2);
   lease->give_back();
 
   // Repeated, backward and absurd numbers are no gaps.
@@ -109,12 +76,12 @@ TEST_CASE("frames that the driver marks, or that are too short, are left out and
   CHECK_FALSE(source.next().has_value());
   camera.deliver({.bytes_used = 0xffff'ffff, .sequence = 2});
   CHECK_FALSE(source.next().has_value());
-  CHECK(source.drop_counts().damaged >= 2);
+  CHECK(source.drops().damaged >= 2);
   camera.deliver({.sequence = 3});
   auto lease = wait_for_frame(source);
   REQUIRE(lease.has_value());
   CHECK(lease->frame().number == 3);
-  CHECK(source.drop_counts().damaged == 3);
+  CHECK(source.drops().damaged == 3);
   lease->give_back();
   CHECK(camera.state().queued.size() == 4);
 }
@@ -242,7 +209,7 @@ TEST_CASE("another camera is not taken in place of the lost one") {
   camera.deliver({.sequence = 0});
   REQUIRE(wait_for_frame(source).has_value());
   camera.state().plugged = false;
-  camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false}};
+  camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false, ""}};
   camera.break_off(ENODEV);
   CHECK(reaches(source, CameraState::kLost));
   const int opens = camera.state().opens;
@@ -251,6 +218,46 @@ TEST_CASE("another camera is not taken in place of the lost one") {
     source.next();
   }
   CHECK(camera.state().opens == opens);
+}
+
+TEST_CASE(
+    "a source made anew by a reload waits for the same camera, with the controls set meanwhile") {
+  FakeCamera camera;
+  camera.state().controls = {
+      {V4L2_CID_BRIGHTNESS, "Brightness", V4L2_CTRL_TYPE_INTEGER, 0, 9, 1, 0, {}, 0}};
+  CameraSource before({}, camera);
+  open(before, camera);
+  camera.deliver({.sequence = 0});
+  REQUIRE(wait_for_frame(before).has_value());
+  before.controls()->set("brightness", "7");
+  camera.state().plugged = false;
+  camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false, ""}};
+  camera.break_off(ENODEV);
+  CHECK(reaches(before, CameraState::kLost));
+
+  CameraParameters parameters;
+  parameters.buffers = 3;
+  CameraSource source(parameters, camera);
+  source.follow(before);
+  CHECK(source.identity() == "Fake, serial A");
+  const int opens = camera.state().opens;
+  for (int i = 0; i < 3; ++i) {
+    REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
+    source.next();
+  }
+  CHECK(camera.state().opens == opens);
+  camera.state().plugged = true;
+  camera.state().error = 0;
+  camera.state().controls[0].value = 1;
+  open(source, camera);
+  CHECK(camera.state().controls[0].value == 7);
+
+  parameters.choice.card = "Fake";
+  parameters.controls = {{"brightness", "3"}};
+  CameraSource other(parameters, camera);
+  other.follow(before);
+  CHECK(other.identity().empty());
+  CHECK(other.controls()->wanted().at("brightness") == "3");
 }
 
 TEST_CASE("a camera that went before its first frame may be replaced by another") {
@@ -262,7 +269,7 @@ TEST_CASE("a camera that went before its first frame may be replaced by another"
   REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
   CHECK_FALSE(source.next().has_value());
   CHECK(source.identity().empty());
-  camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false}};
+  camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false, ""}};
   camera.state().listed = false;
   camera.state().plugged = true;  // the fake opens its one device for all nodes
   camera.state().error = 0;
@@ -326,12 +333,12 @@ TEST_CASE("frames whose buffers are smaller than their luma are damaged") {
   camera.deliver({.sequence = 0});
   REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
   CHECK_FALSE(source.next().has_value());
-  CHECK(source.drop_counts().damaged == 1);
+  CHECK(source.drops().damaged == 1);
 }
 
 TEST_CASE("a silent camera is lost when its time is over") {
   FakeCamera camera;
-  camera.state().frame_rate = 1000;
+  camera.state().interval = {1, 1000};
   CameraParameters parameters;
   parameters.timeout_s = 0.05;
   CameraSource source(parameters, camera);
@@ -350,7 +357,7 @@ TEST_CASE("where all buffers are full and stamps can't be trusted, none is passe
   for (std::uint32_t i = 0; i < 4; ++i) camera.deliver({.sequence = i, .no_clock = true});
   REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
   CHECK_FALSE(source.next().has_value());
-  CHECK(source.drop_counts().stale == 1);
+  CHECK(source.drops().stale == 1);
   camera.deliver({.sequence = 4, .no_clock = true});
   const auto lease = wait_for_frame(source);
   REQUIRE(lease.has_value());

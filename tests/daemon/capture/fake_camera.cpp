@@ -1,6 +1,5 @@
 #include "tests/daemon/capture/fake_camera.hpp"
 
-#include <linux/videodev2.h>
 #include <sys/eventfd.h>
 
 #include <algorithm>
@@ -32,6 +31,7 @@ class FakeDevice final : public VideoDevice {
 
   void* map(std::size_t length, std::int64_t offset) override {
     const auto index = static_cast<std::size_t>(offset) / 4096;
+    if (state_->refuse_maps) return nullptr;
     if (index >= state_->memory.size() || length > state_->memory[index].size()) return nullptr;
     ++state_->mapped_now;
     return state_->memory[index].data();
@@ -40,6 +40,9 @@ class FakeDevice final : public VideoDevice {
 
   int control(unsigned long request, void* argument) override {
     if (!state_->plugged) return ENODEV;
+    if (const auto error = state_->errors.find(request); error != state_->errors.end()) {
+      return error->second;
+    }
     switch (request) {
       case VIDIOC_ENUM_FMT:
         return enumerate_format(*static_cast<v4l2_fmtdesc*>(argument));
@@ -52,8 +55,7 @@ class FakeDevice final : public VideoDevice {
         return format(*static_cast<v4l2_format*>(argument), request == VIDIOC_S_FMT);
       case VIDIOC_G_PARM:
       case VIDIOC_S_PARM:
-        static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe = {
-            1, static_cast<std::uint32_t>(state_->frame_rate)};
+        static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe = state_->interval;
         return 0;
       case VIDIOC_REQBUFS:
         return request_buffers(*static_cast<v4l2_requestbuffers*>(argument));
@@ -89,26 +91,27 @@ class FakeDevice final : public VideoDevice {
     std::vector<std::uint32_t> all = state_->formats;
     const std::size_t native = all.size();
     if (converted_) all.insert(all.end(), state_->emulated.begin(), state_->emulated.end());
-    if (format.index >= all.size()) return EINVAL;
-    format.pixelformat = all[format.index];
+    if (format.index >= all.size() && !state_->endless) return EINVAL;
+    format.pixelformat = all[format.index % all.size()];
     if (format.index >= native) format.flags = V4L2_FMT_FLAG_EMULATED;
     return 0;
   }
   int enumerate_size(v4l2_frmsizeenum& size) const {
-    if (size.index > 0) return EINVAL;
+    if (size.index > 0 && !state_->endless) return EINVAL;
     size.type = V4L2_FRMSIZE_TYPE_DISCRETE;
     size.discrete = {static_cast<std::uint32_t>(state_->width),
                      static_cast<std::uint32_t>(state_->height)};
     return 0;
   }
   int enumerate_interval(v4l2_frmivalenum& interval) const {
-    if (interval.index > 0) return EINVAL;
+    if (interval.index > 0 && !state_->endless) return EINVAL;
     interval.type = V4L2_FRMIVAL_TYPE_DISCRETE;
-    interval.discrete = {1, static_cast<std::uint32_t>(state_->frame_rate)};
+    interval.discrete = state_->interval;
     return 0;
   }
   int format(v4l2_format& format, bool set) const {
-    const auto width = static_cast<std::uint32_t>(state_->width);
+    const auto width = static_cast<std::uint32_t>(state_->forced_width != 0 ? state_->forced_width
+                                                                            : state_->width);
     const auto height = static_cast<std::uint32_t>(state_->height);
     if (state_->multiplanar) {
       v4l2_pix_format_mplane& pixels = format.fmt.pix_mp;
@@ -121,6 +124,7 @@ class FakeDevice final : public VideoDevice {
     } else {
       v4l2_pix_format& pixels = format.fmt.pix;
       if (set) state_->set_fourcc = pixels.pixelformat;
+      if (state_->forced_fourcc != 0) pixels.pixelformat = state_->forced_fourcc;
       pixels.width = width;
       pixels.height = height;
       pixels.bytesperline = state_->row_stride;
@@ -169,17 +173,17 @@ class FakeDevice final : public VideoDevice {
       std::vector<std::uint8_t>& memory = state_->memory[buffer.index];
       std::fill(memory.begin(), memory.end(), delivery.fill);
     }
-    const std::uint32_t used =
-        delivery.bytes_used != 0 ? delivery.bytes_used : state_->buffer_bytes;
+    const std::uint32_t used = delivery.bytes_used.value_or(state_->buffer_bytes);
     if (state_->multiplanar) {
       buffer.m.planes[0].bytesused = used;
+      buffer.m.planes[0].data_offset = delivery.data_offset;
     } else {
       buffer.bytesused = used;
     }
     buffer.sequence = delivery.sequence;
     buffer.flags = delivery.flags | (delivery.no_clock ? 0U : V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC);
-    const std::int64_t stamp_us = delivery.stamp_us != 0 ? delivery.stamp_us : now().mono_us;
-    buffer.timestamp = {stamp_us / 1'000'000, stamp_us % 1'000'000};
+    const std::int64_t now_us = now().mono_us;
+    buffer.timestamp = delivery.stamp.value_or(timeval{now_us / 1'000'000, now_us % 1'000'000});
     return 0;
   }
 
@@ -197,7 +201,7 @@ class FakeDevice final : public VideoDevice {
     const bool next = (query.id & V4L2_CTRL_FLAG_NEXT_CTRL) != 0;
     const std::uint32_t id = query.id & ~V4L2_CTRL_FLAG_NEXT_CTRL;
     for (const FakeCamera::FakeControl& control : state_->controls) {
-      if (next ? control.id <= id : control.id != id) continue;
+      if (!state_->endless && (next ? control.id <= id : control.id != id)) continue;
       query = {};
       query.id = control.id;
       query.type = control.type;
@@ -205,7 +209,7 @@ class FakeDevice final : public VideoDevice {
       query.minimum = control.minimum;
       query.maximum = control.maximum;
       query.step = 1;
-      query.flags = owned(control) ? V4L2_CTRL_FLAG_INACTIVE : 0U;
+      query.flags = control.flags | (owned(control) ? V4L2_CTRL_FLAG_INACTIVE : 0U);
       return 0;
     }
     return EINVAL;
@@ -247,7 +251,7 @@ FakeCamera::FakeCamera() : state_(std::make_shared<State>()) {
 std::vector<CameraInformation> FakeCamera::cameras() const {
   std::vector<CameraInformation> all;
   if (state_->plugged && state_->listed) {
-    all.push_back({"/dev/video0", {}, "Fake", "usb-1", "A", "fake", state_->multiplanar});
+    all.push_back({"/dev/video0", {}, "Fake", "usb-1", "A", "fake", state_->multiplanar, ""});
   }
   all.insert(all.end(), state_->others.begin(), state_->others.end());
   return all;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <linux/videodev2.h>
+
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -25,11 +27,12 @@ class FakeCamera final : public CameraSystem {
 
   // A buffer that the driver returns, in the order of these.
   struct Delivery {
-    std::optional<std::uint32_t> index = {};  // nothing: the buffer queued first
-    std::uint32_t bytes_used = 0;             // 0: all
-    std::uint32_t flags = 0;                  // added to a monotonic stamp of the end of frame
+    std::optional<std::uint32_t> index = {};       // nothing: the buffer queued first
+    std::optional<std::uint32_t> bytes_used = {};  // nothing: all
+    std::uint32_t data_offset = 0;                 // of the first of several planes
+    std::uint32_t flags = 0;                       // added to a monotonic stamp of the end of frame
     std::uint32_t sequence = 0;
-    std::int64_t stamp_us = 0;  // 0: now
+    std::optional<timeval> stamp = {};  // nothing: now
     bool no_clock = false;
     std::uint8_t fill = 0;  // every byte of the frame
   };
@@ -43,6 +46,7 @@ class FakeCamera final : public CameraSystem {
     std::int64_t minimum = 0, maximum = 0, value = 0;
     std::uint32_t owner = 0;  // a control that must be manual (1) before this can be set
     std::vector<std::string> menu;
+    std::uint32_t flags = 0;
   };
 
   // The state, for tests to set and to look at.
@@ -54,7 +58,12 @@ class FakeCamera final : public CameraSystem {
     std::vector<std::uint32_t> emulated;  // by libv4l2, in addition
     int width = 64, height = 48;
     std::uint32_t row_stride = 64, buffer_bytes = 64 * 48;
-    int frame_rate = 30;
+    v4l2_fract interval = {1, 30};        // of the frames
+    std::uint32_t forced_fourcc = 0;      // what is set, whatever was asked for; 0: that
+    int forced_width = 0;                 // the same
+    bool endless = false;                 // lists of formats, sizes, rates and controls never end
+    std::map<unsigned long, int> errors;  // of other requests than for frames, by their numbers
+    bool refuse_maps = false;
     std::uint32_t buffer_count = 0;  // 0: as many as are asked for
     int busy_starts = 0;             // so many tries fail with EBUSY
     std::uint32_t capabilities = 0;  // of the buffers

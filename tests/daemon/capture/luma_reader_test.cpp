@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "daemon/capture/video_device.hpp"
@@ -25,6 +26,15 @@ std::vector<std::uint8_t> even_jpeg(int width, int height, std::uint8_t luma) {
   picture.resize(width, height);
   std::fill(picture.pixels.begin(), picture.pixels.end(), luma);
   return jpeg_bytes(picture, 100);
+}
+
+// What a noisy camera sends.
+GreyImage noise(int width, int height) {
+  std::mt19937 random(3);
+  GreyImage picture;
+  picture.resize(width, height);
+  for (std::uint8_t& pixel : picture.pixels) pixel = static_cast<std::uint8_t>(random());
+  return picture;
 }
 
 std::vector<std::uint8_t> bytes(std::size_t count) {
@@ -214,6 +224,69 @@ TEST_CASE("damaged JPEGs are refused, and the next whole one is read") {
   }
   CHECK_FALSE(reader.read(bytes(5000)).has_value());
   CHECK(reader.read(jpeg).has_value());
+}
+
+TEST_CASE("whatever is changed in a JPEG, it is refused or a picture of the camera's size") {
+  LumaReader reader({format(V4L2_PIX_FMT_MJPEG), 64, 48, 0}, {});
+  const std::vector<std::uint8_t> whole = jpeg_bytes(noise(64, 48), 90);
+  const auto frame_header =
+      std::search(whole.begin(), whole.end(), "\xff\xc0", "\xff\xc0" + 2,
+                  [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); }) -
+      whole.begin();
+  std::mt19937 random(8);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<std::uint8_t> changed = whole;
+    for (int hits = 1 + i % 4; hits > 0; --hits) {
+      // Every second time in the headers: sizes, planes, tables.
+      const std::size_t range =
+          i % 2 == 0 ? changed.size() : static_cast<std::size_t>(frame_header) + 40;
+      changed[random() % range] = static_cast<std::uint8_t>(random());
+    }
+    if (i % 5 == 0) changed.resize(random() % changed.size());
+    const auto view = reader.read(changed);
+    if (view) {
+      CHECK(view->width == 64);
+      CHECK(view->height == 48);
+    } else {
+      ++refused;
+    }
+  }
+  CHECK(refused > 1000);
+  // As large as the format allows.
+  std::vector<std::uint8_t> huge = whole;
+  for (std::ptrdiff_t i = 5; i < 9; ++i) huge[static_cast<std::size_t>(frame_header + i)] = 0xff;
+  CHECK_FALSE(reader.read(huge).has_value());
+  CHECK(reader.read(whole).has_value());
+}
+
+// Every scan costs a pass over the picture, and a small file may have very many.
+TEST_CASE("JPEGs of several scans are no camera's, and one of very many is refused by all") {
+  LumaReader reader({format(V4L2_PIX_FMT_MJPEG), 64, 48, 0}, {});
+  const GreyImage picture = noise(64, 48);
+  for (const JpegScans scans : {JpegScans::kOneForEachPlane, JpegScans::kProgressive}) {
+    const std::vector<std::uint8_t> jpeg = jpeg_bytes(picture, 90, scans);
+    CHECK_FALSE(reader.read(jpeg).has_value());
+    JpegDecoder decoder;
+    GreyImage read;
+    read.resize(64, 48);
+    REQUIRE(decoder.read_header(jpeg));
+    CHECK(decoder.read_luma(read.pixels.data()));
+  }
+  // The last plane again and again.
+  std::vector<std::uint8_t> many = jpeg_bytes(picture, 90, JpegScans::kOneForEachPlane);
+  std::size_t scan = many.size() - 2;
+  while (many[scan] != 0xff || many[scan + 1] != 0xda) --scan;
+  const std::vector<std::uint8_t> last(many.begin() + static_cast<std::ptrdiff_t>(scan),
+                                       many.end() - 2);
+  for (int i = 0; i < 200; ++i) many.insert(many.end() - 2, last.begin(), last.end());
+  JpegDecoder decoder;
+  GreyImage read;
+  read.resize(64, 48);
+  REQUIRE(decoder.read_header(many));
+  CHECK_FALSE(decoder.read_luma(read.pixels.data()));
+  CHECK(std::string(decoder.message()).find("scans") != std::string::npos);
+  CHECK(reader.read(jpeg_bytes(picture, 90)).has_value());
 }
 
 TEST_CASE("a JPEG without Huffman tables, as cameras send them, is read with the standard ones") {
