@@ -25,10 +25,12 @@ double unlikelihood(std::span<const NoisyResidual> residuals, double floor_px) {
 
 double noise_floor(std::span<const NoisyResidual> residuals) {
   constexpr double kLeastPx = 1e-4, kStep = 1.15;  // finer makes no difference
+  constexpr int kSteps = 66;                       // to 1 px
   constexpr double kClearly = 4;                   // two deviations
   if (residuals.empty()) return 0;
   double best = 0, least = unlikelihood(residuals, 0) - kClearly;
-  for (double floor_px = kLeastPx; floor_px <= 1; floor_px *= kStep) {
+  double floor_px = kLeastPx;
+  for (int step = 0; step < kSteps; ++step, floor_px *= kStep) {
     const double here = unlikelihood(residuals, floor_px);
     if (here >= least) continue;
     least = here;
