@@ -211,7 +211,7 @@ TEST_CASE("roundeld waits for a camera that is not there, through reloads, and e
     return "source: camera\ncamera: {device: " + pipe + more + "}\nlcm: {url: \"" + url(kPort) +
            "\"}\ncontrol: {socket: \"\"}\n";
   };
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", config(""))));
   REQUIRE(daemon.wait_for("no camera is at " + pipe, kPatience));
   folder.write("roundel.yaml", config(", controls: {gain: 3}"));
