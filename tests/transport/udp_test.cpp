@@ -25,8 +25,9 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr const char* kUrl = "udpm://239.255.76.69:7671?ttl=0";
-constexpr std::uint16_t kPort = 7671;
+// A port of this process's own: the tests of this file run beside each other.
+const auto kPort = static_cast<std::uint16_t>(20000 + ::getpid() % 10000);
+const std::string kUrl = "udpm://239.255.76.69:" + std::to_string(kPort) + "?ttl=0";
 
 using Datagram = std::vector<std::uint8_t>;
 
@@ -148,7 +149,7 @@ TEST_CASE("what LCM's library sends is understood") {
 TEST_CASE("a machine can be sent to alone, and hears it beside the group") {
   if (!multicast_is_private()) return;
   Subscriber subscriber(kUrl, "UDP_TEST");
-  Publisher publisher(open_sender("udpm://127.0.0.1:7671"), parameters());
+  Publisher publisher(open_sender("udpm://127.0.0.1:" + std::to_string(kPort)), parameters());
   publisher.publish(sample_information(7), sample_markers(3));
   const ReceivedFrame* frame = subscriber.next_frame(10s);
   REQUIRE(frame != nullptr);
@@ -230,7 +231,8 @@ int messages_that_leave(int ttl) {
   address.sll_protocol = htons(ETH_P_IP);
   address.sll_ifindex = static_cast<int>(::if_nametoindex("v1"));
   ::bind(other_end, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  const auto sender = open_sender("udpm://239.255.76.69:7671?ttl=" + std::to_string(ttl), "v0");
+  const auto sender = open_sender(
+      "udpm://239.255.76.69:" + std::to_string(kPort) + "?ttl=" + std::to_string(ttl), "v0");
   const Datagram message(10, 'x');
   for (int i = 0; i < 10; ++i) sender->send("A", message);
   int seen = 0;
