@@ -24,6 +24,11 @@ if [[ $directory == --fill-database ]]; then  # called by mmdebstrap, while it s
     echo >>"$database/status"
     rm -rf "$control"
   done
+  # Links such as libz.so name the library by its place on a running system. Where they lead nowhere, a
+  # static library would be linked instead.
+  find "$root" -type l -lname '/*' | while read -r link; do
+    ln -sfn --relative "$root$(readlink "$link")" "$link"
+  done
   exit
 fi
 
