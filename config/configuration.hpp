@@ -35,8 +35,8 @@ struct FilesSettings {
 
 struct CameraSettings {
   std::string name = "camera";
-  std::string calibration;          // path; empty: none (the simulator knows its own lens)
-  std::string response = "auto";    // or ResponseCurve::named()
+  std::string calibration;        // path; empty: none (the simulator knows its own lens)
+  std::string response = "auto";  // or ResponseCurve::named()
 
   // Which camera; all empty: the first that can capture.
   std::string device;                               // node or link

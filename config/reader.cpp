@@ -21,7 +21,7 @@ constexpr std::size_t kMaxListLength = 10000;
 
 // A value as an error message shows it: short and on one line.
 std::string shown(std::string text) {
-  if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "...";
+  if (text.size() > kMaxShown) text.replace(kMaxShown, std::string::npos, "...");
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   }

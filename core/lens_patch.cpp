@@ -46,7 +46,7 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
 }
 
 std::array<Cubic, 2> LensPatch::cubic() const {
-  std::array<Cubic, 2> cubic;
+  std::array<Cubic, 2> cubic{};
   constexpr std::array<int, kTerms - 1> kOrder = {1, 1, 2, 2, 2, 3, 3, 3, 3};
   for (int axis = 0; axis < 2; ++axis) {
     for (int term = 1; term < kTerms; ++term) {

@@ -127,6 +127,7 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): attributes and names take none.
 #define ROUNDEL_LINE_KERNELS(suffix, attribute, bytes)                                             \
   attribute void average_##suffix(const std::uint8_t* upper, const std::uint8_t* lower, int count, \
                                   std::uint8_t* out) {                                             \
@@ -142,6 +143,7 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
     judge_line<bytes>(low, high, blocks, contrast, looks);                                         \
   }                                                                                                \
   constexpr LineKernels k_kernels_##suffix{average_##suffix, bound_##suffix, judge_##suffix};
+// NOLINTEND(bugprone-macro-parentheses)
 
 ROUNDEL_LINE_KERNELS(baseline, , 16)
 #if defined(__x86_64__)

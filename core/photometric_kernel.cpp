@@ -162,26 +162,26 @@ struct Kernels {
 // NOLINTEND(bugprone-macro-parentheses)
 ROUNDEL_KERNELS(baseline, , false)
 ROUNDEL_KERNELS(baseline_boxed, , true)
-constexpr Kernels k_baseline_kernels{k_baseline, k_baseline_boxed};
+constexpr Kernels kBaselineKernels{k_baseline, k_baseline_boxed};
 #if defined(__x86_64__)
 // Without fused multiply-add, which would round otherwise than the baseline.
 ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))), false)
 ROUNDEL_KERNELS(avx2_boxed, __attribute__((target("avx2"))), true)
-constexpr Kernels k_avx2_kernels{k_avx2, k_avx2_boxed};
+constexpr Kernels kAvx2Kernels{k_avx2, k_avx2_boxed};
 // Twice as many registers of the same width.
 #define ROUNDEL_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq")))
 ROUNDEL_KERNELS(avx512, ROUNDEL_AVX512, false)
 ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_AVX512, true)
-constexpr Kernels k_avx512_kernels{k_avx512, k_avx512_boxed};
+constexpr Kernels kAvx512Kernels{k_avx512, k_avx512_boxed};
 #endif
 
 const Kernels& best_kernels(VectorUnit unit) {
 #if defined(__x86_64__)
   static const int width = widest_vectors();
-  if (unit == VectorUnit::kBest && width >= 512) return k_avx512_kernels;
-  if (unit != VectorUnit::kBaseline && width >= 256) return k_avx2_kernels;
+  if (unit == VectorUnit::kBest && width >= 512) return kAvx512Kernels;
+  if (unit != VectorUnit::kBaseline && width >= 256) return kAvx2Kernels;
 #endif
-  return k_baseline_kernels;
+  return kBaselineKernels;
 }
 
 const Kernels::Set& kernels(const PhotometricModel& model, VectorUnit unit) {

@@ -24,7 +24,7 @@ __attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v
   const int u = column * kWord, count = std::min(kWord, frame_.width - u);
   const std::uint8_t* luma = frame_.row(v) + u * frame_.pixel_stride;
   if (frame_.pixel_stride == 1 && count == kWord) return bits_of_64_below(luma, threshold_);
-  std::array<std::uint8_t, kWord> bytes;
+  std::array<std::uint8_t, kWord> bytes{};
   bytes.fill(255);  // never below a threshold
   for (int i = 0; i < count; ++i) {
     bytes[static_cast<std::size_t>(i)] = luma[i * frame_.pixel_stride];
@@ -33,7 +33,8 @@ __attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v
 }
 
 inline RegionFiller::Word& RegionFiller::word(int column, int v) {
-  Word& word = words_[static_cast<std::size_t>(v * words_a_row_ + column)];
+  Word& word = words_[static_cast<std::size_t>(v) * static_cast<std::size_t>(words_a_row_) +
+                      static_cast<std::size_t>(column)];
   if (word.stamp != stamp_) [[unlikely]] {
     word = {classify(column, v), stamp_};
   }
@@ -44,12 +45,12 @@ inline RegionFiller::Word& RegionFiller::word(int column, int v) {
 FillResult RegionFiller::append(int u, int v) {
   int column = u / kWord;
   Word* here = &word(column, v);
-  int first = u % kWord, last = first;
+  int first = u % kWord;
   // Clear bits below and above the pixel end the run, if there are any in this word.
   const std::uint64_t below = ~here->dark & ~(kAll << static_cast<unsigned>(first));
   const std::uint64_t above = ~here->dark & (kAll << static_cast<unsigned>(first));
   first = below != 0 ? kWord - std::countl_zero(below) : 0;
-  last = above != 0 ? std::countr_zero(above) - 1 : kWord - 1;
+  const int last = above != 0 ? std::countr_zero(above) - 1 : kWord - 1;
   here->dark &= ~bits_between(first, last);
   int u0 = column * kWord + first, u1 = column * kWord + last;
   for (int left = column; left > 0 && u0 == left * kWord;) {
@@ -130,7 +131,7 @@ void RegionFiller::summarise(int u, int v) {
 FillResult RegionFiller::fill(const LumaView& frame, int u, int v, int threshold,
                               const Limits& limits) {
   const int words_a_row = (frame.width + kWord - 1) / kWord;
-  const auto words = static_cast<std::size_t>(words_a_row * frame.height);
+  const auto words = static_cast<std::size_t>(words_a_row) * static_cast<std::size_t>(frame.height);
   if (words_a_row != words_a_row_ || words_.size() < words) {
     words_.assign(words, Word{});
     words_a_row_ = words_a_row;

@@ -38,8 +38,8 @@ class ControlClient {
   nlohmann::ordered_json send(const std::string& method, const std::string& path,
                               const nlohmann::ordered_json& body) const;
 
-  // By POST, a body without end: `take` is given it piece by piece, until it returns false or roundeld ends;
-  // what it throws comes out here. `go_on` is asked besides, at least once a second.
+  // By POST, a body without end: `take` is given it piece by piece, until it returns false or
+  // roundeld ends; what it throws comes out here. `go_on` is asked besides, at least once a second.
   void stream(const std::string& path, const std::function<bool(std::string_view)>& take,
               const std::function<bool()>& go_on) const;
 

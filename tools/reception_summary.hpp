@@ -20,8 +20,8 @@ class ReceptionSummary {
  private:
   double rate() const;  // frames a second
 
-  LatencyHistogram latency_;  // from capture to arrival; of no meaning between machines whose
-                              // clocks do not agree
+  LatencyHistogram latency_;   // from capture to arrival; of no meaning between machines whose
+                               // clocks do not agree
   LatencyHistogram interval_;  // from one frame to the next
   std::int64_t first_us_ = 0, last_us_ = 0;
   std::int64_t frames_ = 0, markers_ = 0;

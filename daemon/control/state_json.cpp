@@ -16,8 +16,10 @@ using Json = nlohmann::ordered_json;
 
 template <std::size_t N>
 const char* name_of(const std::array<const char*, N>& names, int code) {
-  return code >= 0 && static_cast<std::size_t>(code) < N ? names[static_cast<std::size_t>(code)]
-                                                         : "unknown";
+  const bool known = code >= 0 && static_cast<std::size_t>(code) < N;
+  if (!known) return "unknown";
+  // cppcheck-suppress CastIntegerToAddressAtReturn  ; the elements are pointers
+  return names[static_cast<std::size_t>(code)];
 }
 
 constexpr std::array kCameraStates = {"starting", "streaming", "lost", "ended"};
