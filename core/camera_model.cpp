@@ -66,6 +66,25 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& dis
   return std::nullopt;
 }
 
+std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& distorted,
+                                                      const Eigen::Vector2d& guess) const {
+  constexpr int kMaxSteps = 6;
+  constexpr double kTolerance =
+      3e-5;  // of the step before the last one: the next leaves its square
+  Eigen::Vector2d x = guess;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const Eigen::Matrix2d jacobian = distort_jacobian(x);
+    if (!(jacobian.determinant() > 1e-9)) return std::nullopt;
+    const Eigen::Vector2d change = jacobian.inverse() * (distort(x) - distorted);
+    x -= change;
+    if (change.norm() < kTolerance) {
+      if (!before_fold(distortion, x.squaredNorm())) return std::nullopt;
+      return x;
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<Eigen::Vector2d> CameraModel::normalise(const Eigen::Vector2d& pixel) const {
   return undistort(from_pixel(pixel));
 }

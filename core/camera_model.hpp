@@ -28,6 +28,10 @@ struct CameraModel {
   // inverse (beyond the radius at which it folds back).
   std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
 
+  // The same to 1e-7 or better, from a guess near the result.
+  std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted,
+                                           const Eigen::Vector2d& guess) const;
+
   // A pixel's normalised point, with the lens removed.
   std::optional<Eigen::Vector2d> normalise(const Eigen::Vector2d& pixel) const;
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace roundel {
 
@@ -29,9 +30,14 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
   LensPatch patch;
   patch.middle_ = middle;
   patch.scale_ = 1 / std::max(reach, 1.0);
+  const auto at_middle = camera.normalise(middle);
+  if (!at_middle) return std::nullopt;
+  const Eigen::Matrix2d slope = camera.distort_jacobian(*at_middle).inverse();
+  const Eigen::Vector2d seen = camera.distort(*at_middle);
   Eigen::Matrix<double, 2, kPoints> points;
   for (int i = 0; i < kPoints; ++i) {
-    const auto point = camera.normalise(middle + grid(i) / patch.scale_);
+    const Eigen::Vector2d wanted = camera.from_pixel(middle + grid(i) / patch.scale_);
+    const auto point = camera.undistort(wanted, *at_middle + slope * (wanted - seen));
     if (!point) return std::nullopt;
     points.col(i) = *point;
   }
@@ -39,15 +45,17 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
   return patch;
 }
 
-Eigen::Matrix<double, 2, 4> LensPatch::row(double dv) const {
-  const double y = dv * scale_, s = scale_;
-  const auto& c = coefficients_;  // of 1, x, y, xx, xy, yy, xxx, xxy, xyy, yyy
-  Eigen::Matrix<double, 2, 4> row;
-  row.col(0) = c.col(0) + y * (c.col(2) + y * (c.col(5) + y * c.col(9)));
-  row.col(1) = s * (c.col(1) + y * (c.col(4) + y * c.col(8)));
-  row.col(2) = s * s * (c.col(3) + y * c.col(7));
-  row.col(3) = s * s * s * c.col(6);
-  return row;
+std::array<Cubic, 2> LensPatch::cubic() const {
+  std::array<Cubic, 2> cubic;
+  constexpr std::array<int, kTerms - 1> kOrder = {1, 1, 2, 2, 2, 3, 3, 3, 3};
+  for (int axis = 0; axis < 2; ++axis) {
+    for (int term = 1; term < kTerms; ++term) {
+      const auto k = static_cast<std::size_t>(term - 1);
+      cubic[static_cast<std::size_t>(axis)][k] =
+          static_cast<float>(coefficients_(axis, term) * std::pow(scale_, kOrder[k]));
+    }
+  }
+  return cubic;
 }
 
 }  // namespace roundel

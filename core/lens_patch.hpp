@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 
 #include "core/camera_model.hpp"
+#include "core/lens_kernel.hpp"
 
 namespace roundel {
 
@@ -25,8 +27,8 @@ class LensPatch {
     return coefficients_ * terms;
   }
 
-  // The same along a row: coefficients of 1, du, du^2 and du^3.
-  Eigen::Matrix<double, 2, 4> row(double dv) const;
+  // The same relative to the middle, for remove_lens().
+  std::array<Cubic, 2> cubic() const;
 
   const Eigen::Vector2d& middle() const { return middle_; }
 

@@ -48,7 +48,7 @@ struct MarkerPixels::Row {
   const std::uint8_t* luma;  // of pixel u = 0
   std::ptrdiff_t pixel_stride;
   double centre_u;
-  std::array<float, 4> x, y;  // cubic polynomials in u - centre_u
+  float dv;  // of the row, from the marker's middle
 };
 
 void MarkerPixels::Columns::make_room(int more) {
@@ -56,18 +56,27 @@ void MarkerPixels::Columns::make_room(int more) {
   const auto needed = static_cast<std::size_t>(total);
   if (x.size() >= needed) return;
   for (auto* column : {&x, &y, &grey, &weight}) column->resize(2 * needed);
+  luma.resize(2 * needed);
 }
 
-void MarkerPixels::Columns::fill_up() {
+// From offsets and luma to what the fit wants, the last block filled up.
+void MarkerPixels::Columns::finish(const LensPatch& patch, const ResponseCurve& response) {
   if (used == 0) return;
   make_room(kPixelBlock);
-  const auto last = static_cast<std::size_t>(used - 1);
-  for (auto i = static_cast<std::size_t>(used); i % kPixelBlock != 0; ++i) {
-    x[i] = x[last];
-    y[i] = y[last];
-    grey[i] = grey[last];
-    weight[i] = 0;
+  const auto count = static_cast<std::size_t>(used), last = count - 1;
+  std::size_t filled = count;
+  for (; filled % kPixelBlock != 0; ++filled) {
+    x[filled] = x[last];
+    y[filled] = y[last];
+    luma[filled] = luma[last];
   }
+  for (std::size_t i = 0; i < filled; ++i) {
+    grey[i] = response.light(luma[i]);
+    weight[i] = response.slope(luma[i]);
+  }
+  std::fill(weight.begin() + static_cast<std::ptrdiff_t>(count),
+            weight.begin() + static_cast<std::ptrdiff_t>(filled), 0.0F);
+  remove_lens(patch.cubic(), x.data(), y.data(), static_cast<int>(filled));
 }
 
 PixelColumns MarkerPixels::Columns::view() const {
@@ -75,33 +84,33 @@ PixelColumns MarkerPixels::Columns::view() const {
   return {x.data(), y.data(), grey.data(), weight.data(), filled};
 }
 
-void MarkerPixels::take(const Row& row, const ResponseCurve& response, int u0, int u1, int stride,
-                        Columns& columns) {
+void MarkerPixels::take(const Row& row, int u0, int u1, int stride, Columns& columns) {
   if (u1 < u0) return;
-  const int count = (u1 - u0) / stride + 1;
+  const int count = stride == 1 ? u1 - u0 + 1 : (u1 - u0) / stride + 1;
   columns.make_room(count);
   const auto start = static_cast<std::size_t>(columns.used);
+  // By groups of four, which overwrite the room behind: a span is a few pixels long.
+  using Float4 = float __attribute__((vector_size(16)));
+  const auto between = static_cast<float>(stride);
+  Float4 du = static_cast<float>(u0 - row.centre_u) + Float4{0, 1, 2, 3} * between;
+  const Float4 dv = Float4{} + row.dv;
   float* x = columns.x.data() + start;
   float* y = columns.y.data() + start;
-  float* grey = columns.grey.data() + start;
-  float* weight = columns.weight.data() + start;
-  const auto first = static_cast<float>(u0 - row.centre_u);
-  for (int i = 0; i < count; ++i) {
-    const float d = first + static_cast<float>(i * stride);
-    x[i] = row.x[0] + d * (row.x[1] + d * (row.x[2] + d * row.x[3]));
-    y[i] = row.y[0] + d * (row.y[1] + d * (row.y[2] + d * row.y[3]));
+  for (int i = 0; i < count; i += 4) {
+    __builtin_memcpy(x + i, &du, sizeof du);
+    __builtin_memcpy(y + i, &dv, sizeof dv);
+    du += 4 * between;
   }
-  const std::uint8_t* luma = row.luma + u0 * row.pixel_stride;
+  const std::uint8_t* from = row.luma + u0 * row.pixel_stride;
   const std::ptrdiff_t step = stride * row.pixel_stride;
-  for (int i = 0; i < count; ++i, luma += step) {
-    grey[i] = response.light(*luma);
-    weight[i] = response.slope(*luma);
-  }
+  std::uint8_t* to = columns.luma.data() + start;
+  for (int i = 0; i < count; ++i, from += step) to[i] = *from;
   columns.used += count;
 }
 
 bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
-                        const ResponseCurve& response, const Ellipse& ellipse, double reach_px) {
+                        const ResponseCurve& response, const Ellipse& ellipse, double reach_px,
+                        const InnerEdges& inner) {
   const double outside = std::min(kMaxOutside * ellipse.b, reach_px);
   const double a = ellipse.a + outside, b = ellipse.b + outside;
   const double cosine = std::cos(ellipse.angle), sine = std::sin(ellipse.angle);
@@ -118,21 +127,15 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
   // Bands around the edges, in shares of the outline's radius.
   const double reach = reach_px / ellipse.b;
   const double rim_low = std::max(kInnerLimit, 1 - reach), rim_high = 1 + outside / ellipse.b;
-  const double inner_low = std::max(0.0, kPlainInnerRatioMin - reach);
-  const double inner_high = std::min(kInnerLimit, kCodeOuterRatio + reach);
+  const double inner_low = std::max(0.0, inner.low - reach);
+  const double inner_high = std::min(kInnerLimit, inner.high + reach);
 
   const EllipseRows rows(ellipse);
   outer_.used = inner_.used = 0;
   const int last_u = frame.width - 1;
   for (int v = v0; v <= v1; v += stride) {
     const double dv = v - ellipse.v;
-    Row row{frame.row(v), frame.pixel_stride, ellipse.u, {}, {}};
-    const Eigen::Matrix<double, 2, 4> cubic = patch->row(dv);
-    for (int k = 0; k < 4; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      row.x[i] = static_cast<float>(cubic(0, k) - (k == 0 ? middle_.x() : 0));
-      row.y[i] = static_cast<float>(cubic(1, k) - (k == 0 ? middle_.y() : 0));
-    }
+    const Row row{frame.row(v), frame.pixel_stride, ellipse.u, static_cast<float>(dv)};
     const auto take_band = [&](double low, double high, Columns& columns) {
       const EllipseRows::Span whole = rows.inside(dv, high);
       if (whole.u1 < whole.u0) return;
@@ -140,20 +143,20 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
       const int last = std::min(last_u, static_cast<int>(std::floor(whole.u1)));
       const EllipseRows::Span hole = rows.inside(dv, low);
       if (hole.u1 < hole.u0) {
-        take(row, response, first, last, stride, columns);
+        take(row, first, last, stride, columns);
         return;
       }
       const int before = std::min(last, static_cast<int>(std::floor(hole.u0)));
       const int after = std::max(first, static_cast<int>(std::ceil(hole.u1)));
-      take(row, response, first, before, stride, columns);
-      take(row, response, std::max(after, before + 1), last, stride, columns);
+      take(row, first, before, stride, columns);
+      take(row, std::max(after, before + 1), last, stride, columns);
     };
     take_band(rim_low, rim_high, outer_);
     take_band(inner_low, inner_high, inner_);
   }
   if (outer_.used < 2 * kPhotometricUnknowns || inner_.used == 0) return false;
-  outer_.fill_up();
-  inner_.fill_up();
+  outer_.finish(*patch, response);
+  inner_.finish(*patch, response);
   return true;
 }
 

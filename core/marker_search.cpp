@@ -11,35 +11,63 @@ namespace {
 // marker tilted by 75 degrees at the worst angle. Chords a little off the middle are shorter.
 constexpr double kMaxBoxToChord = 2.4;
 
+// A marker's column is at most four times as long as its row when it is tilted by 75 degrees; from
+// the middle of the bright run either way it is less than three quarters of that.
+constexpr int kMaxReachToChord = 3;
+constexpr int kReachSlack = 8;  // pixels
+
+// A ring of 0.2 of the diameter, seen at that tilt, against the row's length.
+constexpr int kThinnestRing = 24;
+
 // Edges must stand out of the noise of an averaged 2 x 2 block over some fifty pixels.
 constexpr double kNoiseFactor = 3.5;
 
-// Pixels of bright and of the dark after it, going from a bright pixel along a column; dark is 0
-// when no bright pixel ends it within `reach` pixels.
-struct ColumnWalk {
-  int bright = 0, dark = 0;
-};
+// A column, read from a pixel on up or down.
+class ColumnWalk {
+ public:
+  ColumnWalk(const LumaView& frame, int u, int v, int direction, int threshold, int reach)
+      : pixel_(frame.row(v) + u * frame.pixel_stride),
+        stride_(direction * frame.row_stride),
+        length_(std::min(reach, direction > 0 ? frame.height - 1 - v : v)),
+        threshold_(threshold) {}
 
-ColumnWalk walk_column(const LumaView& frame, int u, int v, int step, int threshold, int reach) {
-  const int length = std::min(reach, step > 0 ? frame.height - 1 - v : v);
-  const std::uint8_t* p = frame.row(v) + u * frame.pixel_stride;
-  const std::ptrdiff_t stride = step * frame.row_stride;
-  int i = 0;
-  while (i < length && p[i * stride] >= threshold) ++i;
-  const int bright = i;
-  while (i < length && p[i * stride] < threshold) ++i;
-  return {bright, i < length ? i - bright : 0};
-}
+  // First place at or after `start` whose colour is not the given one; the end if there is none.
+  // Goes by steps that no ring of the size looked for falls through, then back to the very edge.
+  int change(int start, bool dark, int step) const {
+    int i = start;
+    while (i < length_ && is_dark(i) == dark) i += step;
+    if (i >= length_ && (step == 1 || is_dark(length_ - 1) == dark)) return length_;
+    i = std::min(i, length_ - 1);
+    while (i > start && is_dark(i - 1) != dark) --i;
+    return i;
+  }
+  int length() const { return length_; }
+
+ private:
+  bool is_dark(int i) const { return pixel_[i * stride_] < threshold_; }
+
+  const std::uint8_t* pixel_;
+  std::ptrdiff_t stride_;
+  int length_, threshold_;
+};
 
 // A seed's row looks like a marker's; so must the column through the middle of its bright run,
 // before anything is filled: this turns down most of what is bright on a darker floor. Returns the
 // length of the column from outer edge to outer edge, 0 when it does not fit.
-int fitting_column(const LumaView& frame, const Seed& seed, int reach) {
-  const ColumnWalk up = walk_column(frame, seed.bright_u, seed.v, -1, seed.threshold, reach);
-  if (up.dark == 0) return 0;
-  const ColumnWalk down = walk_column(frame, seed.bright_u, seed.v, 1, seed.threshold, reach);
-  if (!is_marker_pattern(up.dark, up.bright + down.bright, down.dark)) return 0;
-  return up.dark + up.bright + down.bright + down.dark;
+int fitting_column(const LumaView& frame, const Seed& seed, int max_diameter) {
+  const int reach = std::min(max_diameter, kMaxReachToChord * seed.extent + kReachSlack);
+  const int step = std::max(1, seed.extent / kThinnestRing);
+  const ColumnWalk up(frame, seed.bright_u, seed.v, -1, seed.threshold, reach);
+  const ColumnWalk down(frame, seed.bright_u, seed.v, 1, seed.threshold, reach);
+  const int up_bright = up.change(0, false, step), down_bright = down.change(0, false, step);
+  if (up_bright == up.length() || down_bright == down.length()) return 0;
+  const int up_end = up.change(up_bright, true, step);
+  const int down_end = down.change(down_bright, true, step);
+  if (up_end == up.length() || down_end == down.length()) return 0;
+  if (!is_marker_pattern(up_end - up_bright, up_bright + down_bright, down_end - down_bright)) {
+    return 0;
+  }
+  return up_end + down_end;
 }
 
 }  // namespace

@@ -31,6 +31,15 @@ constexpr double kFirstDeviation = 0.15;
 // A hypothesis behind by so much in its log-likelihood before it is refined stays behind.
 constexpr double kDecided = 1000;
 
+// A first, rough fit uses one of so many blocks of pixels, or more, so that so many pixels are in
+// it; a hypothesis that it leaves behind by so much in its log-likelihood is not refined further.
+constexpr int kRoughEvery = 4, kRoughPixels = 300;
+constexpr double kFarBehind = 40;
+constexpr double kSame = 0.02;  // of the normals, radians
+
+// Residuals that a roughly fitted start adds, share of the contrast.
+constexpr double kSecondDeviation = 0.03;
+
 void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(what);
 }
@@ -124,6 +133,7 @@ struct Observer::Candidate {
   Pattern pattern;
   PoseHypothesis hypothesis;
   std::optional<PhotometricPose> fitted;
+  bool far_behind = false;  // after the rough fit; `fitted` is what that one found
 
   // Whether the fit, as far as there is one, found what a marker looks like.
   bool explained(double contrast) const {
@@ -223,25 +233,56 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
                                    candidates[best].explained(segment.levels.contrast()));
 }
 
+// Fits the candidates' poses to some of the pixels, which mostly tells already which one it is.
+void Observer::fit_roughly(const Segment& segment, std::array<Candidate, 2>& candidates) {
+  FitPlan plan;
+  plan.unknowns = kFollowedUnknowns;
+  plan.rough_every = std::clamp(fit_.loaded_pixels() / kRoughPixels, 1, kRoughEvery);
+  plan.rough_steps = plan.min_steps = plan.max_steps = 3;
+  plan.deviation = kFirstDeviation * segment.levels.contrast();
+  for (std::size_t i = 0; i < 2; ++i) {
+    Candidate& candidate = candidates[i];
+    const double lead =
+        candidates[1 - i].hypothesis.log_likelihood - candidate.hypothesis.log_likelihood;
+    if (lead >= kDecided) continue;
+    const EdgeLook look = edge_look(candidate.pattern);
+    const PhotometricState start =
+        fit_.first_guess(candidate.hypothesis.pose, segment.levels, candidate.pattern, look);
+    candidate.fitted = fit_.fit(start, candidate.pattern, look, plan);
+  }
+  const auto &first = candidates[0].fitted, &second = candidates[1].fitted;
+  if (!first || !second || candidates[0].pattern.kind != candidates[1].pattern.kind) return;
+  // Near the line of sight both lead to the same pose, and one of them is enough.
+  const bool same = (first->state.pose.normal() - second->state.pose.normal()).norm() < kSame;
+  const double floor = kModelError * segment.levels.contrast();
+  const double better = std::min(first->mean_square, second->mean_square) + floor * floor;
+  for (Candidate& candidate : candidates) {
+    const double behind = 0.5 * (candidate.fitted->mean_square + floor * floor - better) *
+                          candidate.fitted->pixels / (plan.rough_every * better);
+    candidate.far_behind = behind > (same ? 0 : kFarBehind);
+  }
+}
+
 // Fits the candidates' poses to the grey values. Where both can be fitted the same way, how well
 // they explain the picture takes the place of what their teeth or bright centres said before.
 void Observer::refine(const LumaView& frame, const Segment& segment,
                       std::array<Candidate, 2>& candidates) {
   const double radius_m = parameters_.diameter_m / 2;
   const bool loaded = fit_.load(frame, *camera_, segment.ellipse, radius_m, kReach);
+  if (loaded) fit_roughly(segment, candidates);
   FitPlan plan;
-  plan.rough_steps = 2;
-  plan.deviation = kFirstDeviation * segment.levels.contrast();
+  plan.rough_steps = 0;
+  plan.max_steps = 5;
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
     auto& fitted = candidate.fitted;
     PoseHypothesis& hypothesis = candidate.hypothesis;
     const EdgeLook look = edge_look(candidate.pattern);
-    const double lead = candidates[1 - i].hypothesis.log_likelihood - hypothesis.log_likelihood;
-    if (loaded && lead < kDecided) {
-      const PhotometricState start =
-          fit_.first_guess(hypothesis.pose, segment.levels, candidate.pattern, look);
-      fitted = fit_.fit(start, candidate.pattern, look, plan);
+    // What a rough fit left far behind is not fitted to all pixels as well.
+    if (fitted && !candidate.far_behind) {
+      plan.deviation =
+          std::sqrt(fitted->mean_square) + kSecondDeviation * segment.levels.contrast();
+      fitted = fit_.fit(fitted->state, candidate.pattern, look, plan);
     }
     if (fitted) {
       hypothesis.pose = fitted->state.pose;

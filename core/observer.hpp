@@ -71,6 +71,7 @@ class Observer {
   struct Candidate;
   Pattern plain_pattern(const Segment& segment) const;
   void observe_with_camera(const LumaView& frame, Observation& observation);
+  void fit_roughly(const Segment& segment, std::array<Candidate, 2>& candidates);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 
   void weigh_curve(const LumaView& frame, const Segment& segment, const Candidate& candidate);

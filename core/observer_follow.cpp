@@ -13,6 +13,9 @@ namespace {
 constexpr double kReachBlurs = 2.5, kReachSlack = 0.5;  // pixels
 constexpr double kMaxReach = 4.0;
 
+// Beyond that the light has changed, share of the contrast.
+constexpr double kSameLight = 0.1;
+
 // More than noise makes of the blur's stretch.
 constexpr double kMotionStretch = 0.1;
 
@@ -46,7 +49,17 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
         Eigen::AngleAxisd(angle, turn / angle) * Eigen::Quaterniond(start.pose.orientation);
   }
   const double reach = std::min(kMaxReach, kReachBlurs * start.blur_px + kReachSlack);
-  if (!fit_.load(frame, *camera_, here, parameters_.diameter_m / 2, reach)) return std::nullopt;
+  InnerEdges inner;
+  if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
+  if (!fit_.load(frame, *camera_, here, parameters_.diameter_m / 2, reach, inner)) {
+    return std::nullopt;
+  }
+  PhotometricState lit = start;
+  fit_.set_levels(segment.levels, lit);
+  if (std::abs(lit.contrast - start.contrast) + std::abs(lit.dark - start.dark) >
+      kSameLight * start.contrast) {
+    start = lit;
+  }
 
   // Some grey levels always: a start that is off shows as residuals at the edges.
   constexpr double kStartDeviation = 0.02;  // share of the contrast
@@ -54,6 +67,8 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
   // Motion blur changes with every turn and has to be fitted along.
   const bool in_motion = std::hypot(start.stretch_u, start.stretch_d) > kMotionStretch;
   plan.unknowns = in_motion ? kCodeUnknowns : kFollowedUnknowns;
+  // So close to where it is expected, some of the pixels are enough for the first step.
+  plan.rough_every = 4;
   plan.max_steps = 4;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * segment.levels.contrast();
   const auto fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);

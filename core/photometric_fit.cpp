@@ -23,10 +23,8 @@ constexpr double kSlopePrior = 0.3;  // of the light, share a radius
 constexpr double kStretchPrior = 0.5;
 constexpr double kPinned = 1e-4;  // for what this pattern does not show
 
-// Where a fit ends: a step that takes so many variances of the residuals off the sum of squares
-// moves the pose by some standard deviations, and what it leaves is of the second order. Rounding
-// to whole grey levels and the model itself leave some variance.
-constexpr double kSettled = 30, kLeastVariance = 0.25;
+// Rounding to whole grey levels and the model itself leave some variance.
+constexpr double kLeastVariance = 0.25;
 
 // What the model gets wrong of an edge that is all box (corners, curves in a pixel), share of the
 // contrast as if it were noise of every pixel. Blur makes the more of it good the more there is.
@@ -59,24 +57,29 @@ double variance_of(const PhotometricState& state, double mean_square) {
 
 struct PhotometricFit::Step {
   Vector change = Vector::Zero();
-  double mean_square = 0;  // of the residuals before it
+  double mean_square = 0;        // of the residuals before it
+  double mean_square_after = 0;  // to second order
   double gain = 0;  // what it takes off the sum of squares, in units of the residuals' variance
   bool last = false;
   PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes; when last
 };
 
 bool PhotometricFit::load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
-                          double radius_m, double reach_px) {
+                          double radius_m, double reach_px, const InnerEdges& inner) {
   radius_m_ = radius_m;
-  return pixels_.load(frame, camera, response_, ellipse, reach_px);
+  return pixels_.load(frame, camera, response_, ellipse, reach_px, inner);
+}
+
+void PhotometricFit::set_levels(const Levels& levels, PhotometricState& state) const {
+  state.dark = response_.light(levels.dark);
+  state.contrast = response_.light(levels.bright) - state.dark;
 }
 
 PhotometricState PhotometricFit::first_guess(const Pose& pose, const Levels& levels,
                                              const Pattern& pattern, const EdgeLook& look) const {
   PhotometricState state;
   state.pose = pose;
-  state.dark = response_.light(levels.dark);
-  state.contrast = response_.light(levels.bright) - state.dark;
+  set_levels(levels, state);
   state.blur_px = look.blur_px;
   state.shift_px = look.shift_px;
   state.inner_ratio = pattern.inner_ratio;
@@ -151,8 +154,11 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   Step step;
   step.mean_square = static_cast<double>(sums.squares / std::max(1.0F, sums.weights));
   const double variance = variance_of(state, step.mean_square);
+  const Eigen::Matrix<double, kCount, 1> seen = right_side;
+  Eigen::Matrix<double, kCount, 1> known = Eigen::Matrix<double, kCount, 1>::Zero();
   const auto add = [&](int unknown, double difference, double deviation) {
     const double weight = variance / (deviation * deviation);
+    known[unknown] = weight;
     normal_matrix(unknown, unknown) += weight;
     right_side[unknown] += weight * difference;
   };
@@ -171,8 +177,14 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   }
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
-  step.gain = right_side.dot(step.change.template head<kCount>()) / variance;
-  step.last = (step.gain < kSettled && taken >= std::max(plan.min_steps, plan.rough_steps + 1)) ||
+  const auto change = step.change.template head<kCount>();
+  step.gain = right_side.dot(change) / variance;
+  // What the step takes off the residuals alone, without what was known beforehand.
+  const double taken_off = change.dot(2 * seen - right_side + known.cwiseProduct(change));
+  step.mean_square_after = std::max(0.0, static_cast<double>(sums.squares) - taken_off) /
+                           static_cast<double>(std::max(1.0F, sums.weights));
+  const bool settled = left_by(state, step.change, step.gain) < plan.settled;
+  step.last = (settled && taken >= std::max(plan.min_steps, plan.rough_steps + 1)) ||
               taken >= plan.max_steps;
   if (step.last) {
     const Eigen::Matrix<double, kCount, 6> columns =
@@ -180,6 +192,30 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
     step.inverse = columns.template topRows<6>();
   }
   return step;
+}
+
+// What a step leaves undone, in standard deviations of the result. A blurred edge looks alike on
+// both sides, so that a Gauss-Newton step by d is wrong only in the third order, by d^3 / 12 in
+// blurs. `gain` is the square of the step in standard deviations.
+double PhotometricFit::left_by(const PhotometricState& state, const Vector& step,
+                               double gain) const {
+  const double blurs = moved_px(state, step) / state.blur_px;
+  return std::sqrt(std::max(0.0, gain)) * blurs * blurs / 12;
+}
+
+// By how much a step moves or blurs edges in the image, pixels, at most about.
+double PhotometricFit::moved_px(const PhotometricState& state, const Vector& step) const {
+  const Pose& pose = state.pose;
+  const double height = -pose.normal().dot(pose.position) / radius_m_;  // of the eye, in radii
+  const double slant = pose.position.norm() / (radius_m_ * std::max(height, 1e-3));
+  const double aside = std::sqrt(std::max(0.0, slant * slant - 1)) + 1 / std::max(height, 1e-3);
+  const double rise = std::abs(step[kMoveZ]) + step.segment<2>(kTurnX).norm();
+  const double in_plane = step.segment<2>(kMoveX).norm() + std::abs(step[kTurnZ]) + rise * aside;
+  const double pixels_a_radius =
+      radius_m_ /
+      (pose.position.z() * std::sqrt(std::abs(pixels_.pixel_slope().determinant()) + 1e-30));
+  return in_plane * pixels_a_radius + std::abs(step[kBlur]) * state.blur_px +
+         std::abs(step[kShift]);
 }
 
 PhotometricState PhotometricFit::advanced(const PhotometricState& state, const Vector& step) const {
@@ -234,7 +270,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
     const PhotometricModel model = model_of(state, pattern, deviation);
     PhotometricSums sums;
     PixelColumns outer = pixels_.outer(), inner = pixels_.inner();
-    outer.every = inner.every = taken <= plan.rough_steps ? 2 : 1;
+    outer.every = inner.every = taken <= plan.rough_steps ? plan.rough_every : 1;
     add_outer_pixels(model, outer, unknowns, sums);
     const float outer_squares = sums.squares, outer_weights = sums.weights;
     if (inside) add_inner_pixels(model, inner, unknowns, sums);
@@ -256,7 +292,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       PhotometricPose result;
       result.state = state;
       result.state.pose.orientation = with_positive_w(pose.orientation);
-      result.mean_square = step.mean_square;
+      result.mean_square = step.mean_square_after;
       const auto mean = [](float squares, float weights) {
         return static_cast<double>(squares / std::max(1.0F, weights));
       };
@@ -264,9 +300,9 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.inner_square = mean(sums.squares - outer_squares, sums.weights - outer_weights);
       result.inner_pixels = inside ? pixels_.inner_count() : 0;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
-      result.trust = static_cast<double>(sums.weights) / result.pixels;
+      result.trust = static_cast<double>(sums.weights) * outer.every / result.pixels;
       result.covariance =
-          to_camera_axes(state, variance_of(state, step.mean_square) * step.inverse);
+          to_camera_axes(state, variance_of(state, step.mean_square_after) * step.inverse);
       return result;
     }
   }

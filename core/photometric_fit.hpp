@@ -55,8 +55,11 @@ struct PhotometricState {
 struct FitPlan {
   int unknowns = kPhotometricUnknowns;  // kFollowedUnknowns keeps the others as they are
   double deviation = 0;  // of the residuals, grey levels, as far as it can be foreseen
-  int rough_steps = 1;   // first ones, that use half of the pixels
+  int rough_steps = 1;   // first ones, that use one of `rough_every` blocks of pixels
+  int rough_every = 2;
   int min_steps = 2, max_steps = 6;
+  // The last step is one that leaves less than so many standard deviations.
+  double settled = 0.03;
 };
 
 // A pose fitted to the grey values.
@@ -86,7 +89,12 @@ class PhotometricFit {
   // Takes the pixels near the edges of the marker under an ellipse, `reach_px` to either side.
   // False when there are too few or the lens model ends.
   bool load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
-            double radius_m, double reach_px);
+            double radius_m, double reach_px, const InnerEdges& inner = {});
+
+  int loaded_pixels() const { return pixels_.outer_count() + pixels_.inner_count(); }
+
+  // Dark and contrast as the fit counts them.
+  void set_levels(const Levels& levels, PhotometricState& state) const;
 
   // A state to start from when nothing but a rough pose and the levels of the segment are known.
   PhotometricState first_guess(const Pose& pose, const Levels& levels, const Pattern& pattern,
@@ -104,6 +112,8 @@ class PhotometricFit {
   template <int kCount>
   Step solve(const PhotometricState& state, const Pattern& pattern, const EdgeLook& look,
              const PhotometricSums& sums, const FitPlan& plan, int taken) const;
+  double left_by(const PhotometricState& state, const Vector& step, double gain) const;
+  double moved_px(const PhotometricState& state, const Vector& step) const;
   PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
                             double deviation) const;
   PhotometricState advanced(const PhotometricState& state, const Vector& step) const;

@@ -4,6 +4,7 @@
 
 #include "core/photometric_edges.hpp"
 #include "core/simd.hpp"
+#include "core/vector_unit.hpp"
 
 namespace roundel {
 
@@ -167,18 +168,24 @@ constexpr Kernels k_baseline_kernels{k_baseline, k_baseline_boxed};
 ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))), false)
 ROUNDEL_KERNELS(avx2_boxed, __attribute__((target("avx2"))), true)
 constexpr Kernels k_avx2_kernels{k_avx2, k_avx2_boxed};
+// Twice as many registers of the same width.
+#define ROUNDEL_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq")))
+ROUNDEL_KERNELS(avx512, ROUNDEL_AVX512, false)
+ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_AVX512, true)
+constexpr Kernels k_avx512_kernels{k_avx512, k_avx512_boxed};
 #endif
 
-const Kernels& best_kernels() {
+const Kernels& best_kernels(VectorUnit unit) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return k_avx2_kernels;
+  static const int width = widest_vectors();
+  if (unit == VectorUnit::kBest && width >= 512) return k_avx512_kernels;
+  if (unit != VectorUnit::kBaseline && width >= 256) return k_avx2_kernels;
 #endif
   return k_baseline_kernels;
 }
 
 const Kernels::Set& kernels(const PhotometricModel& model, VectorUnit unit) {
-  static const Kernels& best = best_kernels();
-  const Kernels& k = unit == VectorUnit::kBest ? best : k_baseline_kernels;
+  const Kernels& k = best_kernels(unit);
   return model.boxed ? k.boxed : k.gaussian;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/marker_geometry.hpp"
+#include "core/vector_unit.hpp"
 
 namespace roundel {
 
@@ -70,12 +71,6 @@ struct PhotometricSums {
   std::array<float, kPhotometricUnknowns*(kPhotometricUnknowns + 1) / 2> normal_matrix{};
   std::array<float, kPhotometricUnknowns> right_side{};
   float squares = 0, weights = 0;  // of the weighted residuals
-};
-
-// Which vector instructions are used; the results are the same to the bit.
-enum class VectorUnit {
-  kBest,     // the widest that the processor has
-  kBaseline  // what every processor of the platform has
 };
 
 // Adds the equations of pixels on the outer rim and of those around the inner edges, for the first

@@ -1,86 +1,114 @@
 #include "core/region.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+
+#include "core/byte_bits.hpp"
 
 namespace roundel {
 
 namespace {
 
-// kStride 0 stands for a stride known only at run time.
-template <int kStride>
-struct RowReader {
-  const std::uint8_t* row;
-  std::ptrdiff_t stride;
-  std::uint8_t operator[](int u) const {
-    if constexpr (kStride == 0) {
-      return row[u * stride];
-    } else {
-      return row[u * kStride];
-    }
-  }
-};
+constexpr int kWord = 64;  // pixels
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+// Bits first ... last of a word, both included.
+std::uint64_t bits_between(int first, int last) {
+  return (kAll << static_cast<unsigned>(first)) & (kAll >> static_cast<unsigned>(kWord - 1 - last));
+}
 
 }  // namespace
 
-template <int kPixelStride>
-FillResult RegionFiller::fill_with_stride(const LumaView& frame, int u, int v, int threshold,
-                                          const Limits& limits) {
-  const int last_u = frame.width - 1, last_v = frame.height - 1;
-  if (RowReader<kPixelStride>{frame.row(v), frame.pixel_stride}[u] >= threshold) {
+__attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v) const {
+  const int u = column * kWord, count = std::min(kWord, frame_.width - u);
+  const std::uint8_t* luma = frame_.row(v) + u * frame_.pixel_stride;
+  if (frame_.pixel_stride == 1 && count == kWord) return bits_of_64_below(luma, threshold_);
+  std::array<std::uint8_t, kWord> bytes;
+  bytes.fill(255);  // never below a threshold
+  for (int i = 0; i < count; ++i) {
+    bytes[static_cast<std::size_t>(i)] = luma[i * frame_.pixel_stride];
+  }
+  return bits_of_64_below(bytes.data(), threshold_);
+}
+
+inline RegionFiller::Word& RegionFiller::word(int column, int v) {
+  Word& word = words_[static_cast<std::size_t>(v * words_a_row_ + column)];
+  if (word.stamp != stamp_) [[unlikely]] {
+    word = {classify(column, v), stamp_};
+  }
+  return word;
+}
+
+// Takes the run around a dark pixel that is in none yet.
+FillResult RegionFiller::append(int u, int v) {
+  int column = u / kWord;
+  Word* here = &word(column, v);
+  int first = u % kWord, last = first;
+  // Clear bits below and above the pixel end the run, if there are any in this word.
+  const std::uint64_t below = ~here->dark & ~(kAll << static_cast<unsigned>(first));
+  const std::uint64_t above = ~here->dark & (kAll << static_cast<unsigned>(first));
+  first = below != 0 ? kWord - std::countl_zero(below) : 0;
+  last = above != 0 ? std::countr_zero(above) - 1 : kWord - 1;
+  here->dark &= ~bits_between(first, last);
+  int u0 = column * kWord + first, u1 = column * kWord + last;
+  for (int left = column; left > 0 && u0 == left * kWord;) {
+    Word& next = word(--left, v);
+    const int length = std::countl_one(next.dark);
+    if (length == 0) break;
+    next.dark &= ~bits_between(kWord - length, kWord - 1);
+    u0 -= length;
+  }
+  while (u1 % kWord == kWord - 1 && ++column < words_a_row_) {
+    Word& next = word(column, v);
+    const int length = std::countr_one(next.dark);
+    if (length == 0) break;
+    next.dark &= ~bits_between(0, length - 1);
+    u1 += length;
+  }
+  if (u0 == 0 || u1 == frame_.width - 1 || v == 0 || v == frame_.height - 1) {
+    return FillResult::kTouchesEdge;
+  }
+  box_.u0 = std::min(box_.u0, u0);
+  box_.u1 = std::max(box_.u1, u1);
+  box_.v0 = std::min(box_.v0, v);
+  box_.v1 = std::max(box_.v1, v);
+  if (box_.width() > limits_.max_width || box_.height() > limits_.max_height) {
+    return FillResult::kTooLarge;
+  }
+  runs_.push_back({v, u0, u1});
+  return FillResult::kComplete;
+}
+
+// Takes the runs of row v that touch a run of the row above or below.
+FillResult RegionFiller::append_neighbours(const Run& run, int v) {
+  const int u0 = run.u0 - 1, u1 = run.u1 + 1;
+  for (int column = u0 / kWord; column <= u1 / kWord; ++column) {
+    const int start = column * kWord;
+    const std::uint64_t touching =
+        bits_between(std::max(0, u0 - start), std::min(kWord - 1, u1 - start));
+    Word& here = word(column, v);
+    while ((here.dark & touching) != 0) {
+      const FillResult result = append(start + std::countr_zero(here.dark & touching), v);
+      if (result != FillResult::kComplete) return result;
+    }
+  }
+  return FillResult::kComplete;
+}
+
+FillResult RegionFiller::grow(int u, int v) {
+  if (((word(u / kWord, v).dark >> static_cast<unsigned>(u % kWord)) & 1U) == 0) {
     return FillResult::kNoSeed;
   }
-  Box box{u, v, u, v};
-
-  // Appends the run around a dark pixel of row `row_v`; false when the region must be given up.
-  FillResult verdict = FillResult::kComplete;
-  const auto append = [&](int inside_u, int row_v) {
-    const RowReader<kPixelStride> row{frame.row(row_v), frame.pixel_stride};
-    int u0 = inside_u, u1 = inside_u;
-    while (u0 > 0 && row[u0 - 1] < threshold) --u0;
-    while (u1 < last_u && row[u1 + 1] < threshold) ++u1;
-    if (u0 == 0 || u1 == last_u || row_v == 0 || row_v == last_v) {
-      verdict = FillResult::kTouchesEdge;
-      return u1;
-    }
-    box.u0 = std::min(box.u0, u0);
-    box.u1 = std::max(box.u1, u1);
-    box.v0 = std::min(box.v0, row_v);
-    box.v1 = std::max(box.v1, row_v);
-    if (box.width() > limits.max_width || box.height() > limits.max_height) {
-      verdict = FillResult::kTooLarge;
-      return u1;
-    }
-    RowHead& head = rows_[static_cast<std::size_t>(row_v)];
-    if (head.stamp != stamp_) head = {stamp_, -1};
-    runs_.push_back({{row_v, u0, u1}, head.first});
-    head.first = static_cast<std::int32_t>(runs_.size() - 1);
-    return u1;
-  };
-
-  append(u, v);
-  for (std::size_t next = 0; next < runs_.size() && verdict == FillResult::kComplete; ++next) {
-    const Run run = runs_[next].run;
-    for (int row_v = run.v - 1; row_v <= run.v + 1; row_v += 2) {
-      const RowReader<kPixelStride> row{frame.row(row_v), frame.pixel_stride};
-      for (int x = run.u0 - 1; x <= run.u1 + 1; ++x) {
-        if (row[x] >= threshold) continue;
-        const RowHead& head = rows_[static_cast<std::size_t>(row_v)];
-        int known_end = -1;
-        for (std::int32_t i = head.stamp == stamp_ ? head.first : -1; i >= 0;
-             i = runs_[static_cast<std::size_t>(i)].next_in_row) {
-          const Run& known = runs_[static_cast<std::size_t>(i)].run;
-          if (x >= known.u0 && x <= known.u1) {
-            known_end = known.u1;
-            break;
-          }
-        }
-        x = known_end >= 0 ? known_end : append(x, row_v);
-        if (verdict != FillResult::kComplete) return verdict;
-      }
-    }
+  box_ = {u, v, u, v};
+  FillResult result = append(u, v);
+  for (std::size_t next = 0; next < runs_.size() && result == FillResult::kComplete; ++next) {
+    const Run run = runs_[next];
+    result = append_neighbours(run, run.v - 1);
+    if (result == FillResult::kComplete) result = append_neighbours(run, run.v + 1);
   }
-  region_.box = box;
-  return verdict;
+  region_.box = box_;
+  return result;
 }
 
 void RegionFiller::summarise(int u, int v) {
@@ -89,8 +117,7 @@ void RegionFiller::summarise(int u, int v) {
   region_.dark = {};
   region_.filled = {};
   spans_.assign(static_cast<std::size_t>(region_.box.height()), Run{0, 1 << 30, -1});
-  for (const StoredRun& stored : runs_) {
-    const Run& run = stored.run;
+  for (const Run& run : runs_) {
     region_.dark.add_run(run.u0 - u, run.u1 - u, run.v - v);
     Run& span = spans_[static_cast<std::size_t>(run.v - region_.box.v0)];
     span.v = run.v;
@@ -102,27 +129,23 @@ void RegionFiller::summarise(int u, int v) {
 
 FillResult RegionFiller::fill(const LumaView& frame, int u, int v, int threshold,
                               const Limits& limits) {
-  if (rows_.size() < static_cast<std::size_t>(frame.height)) {
-    rows_.assign(static_cast<std::size_t>(frame.height), RowHead{});
+  const int words_a_row = (frame.width + kWord - 1) / kWord;
+  const auto words = static_cast<std::size_t>(words_a_row * frame.height);
+  if (words_a_row != words_a_row_ || words_.size() < words) {
+    words_.assign(words, Word{});
+    words_a_row_ = words_a_row;
     spans_.reserve(static_cast<std::size_t>(frame.height));
     stamp_ = 0;
   }
   if (++stamp_ == 0) {  // after 2^32 regions the old stamps would come to life again
-    std::fill(rows_.begin(), rows_.end(), RowHead{});
+    std::fill(words_.begin(), words_.end(), Word{});
     stamp_ = 1;
   }
+  frame_ = frame;
+  threshold_ = static_cast<std::uint8_t>(std::clamp(threshold, 0, 255));
+  limits_ = limits;
   runs_.clear();
-  FillResult result = FillResult::kNoSeed;
-  switch (frame.pixel_stride) {
-    case 1:
-      result = fill_with_stride<1>(frame, u, v, threshold, limits);
-      break;
-    case 2:
-      result = fill_with_stride<2>(frame, u, v, threshold, limits);
-      break;
-    default:
-      result = fill_with_stride<0>(frame, u, v, threshold, limits);
-  }
+  const FillResult result = grow(u, v);
   if (result == FillResult::kComplete) summarise(u, v);
   return result;
 }

@@ -37,9 +37,10 @@ struct Region {
                    // outline the whole interior, whatever specks and patterns lie within
 };
 
-// Collects connected regions of dark pixels by runs: a pixel is compared with the threshold when it
-// is first touched, and no label image exists ([P] 3; METHOD.md section 1). Eight-connected, so
-// that a thin tilted ring holds together. Memory is reused from region to region.
+// Collects connected regions of dark pixels by runs: pixels are compared with the threshold when
+// they are first touched, 64 of a row at once, and no label image exists or is cleared ([P] 3;
+// METHOD.md section 1). Eight-connected, so that a thin tilted ring holds together. Memory is
+// reused from region to region.
 class RegionFiller {
  public:
   struct Limits {
@@ -54,29 +55,35 @@ class RegionFiller {
   // Calls back with every dark run that the last fill came across, also when it was given up.
   template <typename Use>
   void for_each_run(const Use& use) const {
-    for (const StoredRun& stored : runs_) use(stored.run);
+    for (const Run& run : runs_) use(run);
   }
 
   // First and last pixel of every row of the last complete region, from box.v0 on.
   std::span<const Run> row_spans() const { return spans_; }
 
  private:
-  struct StoredRun {
-    Run run;
-    std::int32_t next_in_row = -1;  // index of another run of the same row, -1 at the end
-  };
-  struct RowHead {
-    std::uint32_t stamp = 0;  // the fill that wrote `first`; older ones are void
-    std::int32_t first = -1;
+  // 64 pixels of a row: which of them are dark and not yet in a run. Made when first touched; the
+  // words of earlier fills are void.
+  struct Word {
+    std::uint64_t dark = 0;
+    std::uint32_t stamp = 0;
   };
 
-  template <int kPixelStride>
-  FillResult fill_with_stride(const LumaView& frame, int u, int v, int threshold,
-                              const Limits& limits);
+  Word& word(int column, int v);
+  std::uint64_t classify(int column, int v) const;
+  FillResult append(int u, int v);
+  FillResult append_neighbours(const Run& run, int v);
+  FillResult grow(int u, int v);
   void summarise(int u, int v);
 
-  std::vector<StoredRun> runs_;  // in order of discovery; also the work list
-  std::vector<RowHead> rows_;    // by image row
+  LumaView frame_;  // of the fill at hand, as what follows
+  std::uint8_t threshold_ = 0;
+  Limits limits_;
+  Box box_;
+
+  std::vector<Run> runs_;    // in order of discovery; also the work list
+  std::vector<Word> words_;  // row by row
+  int words_a_row_ = 0;
   std::vector<Run> spans_;
   std::uint32_t stamp_ = 0;
   Region region_;

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <type_traits>
 
-#include "core/simd.hpp"
+#include "core/byte_bits.hpp"
+#include "core/line_kernels.hpp"
 
 namespace roundel {
 
 namespace {
 
-constexpr int kBlock = 16;  // pixels
+constexpr int kBlock = LineKernels::kBlock;
+constexpr std::size_t kBlocksAtOnce = LineKernels::kBlocksAtOnce;
 
 // Bounds of the run pattern across a marker's centre disc, in shares of the bright run. On a line
 // through the middle of a marker the dark runs are 0.33 to 0.95 of it; near the centre disc's rim,
@@ -58,162 +60,121 @@ double estimate_noise(const LumaView& frame) {
 
 namespace {
 
-// Averages of 2 x 2 pixels; `count` of them, each with a neighbour to its right.
+// The same as LineKernels::average for pixels that do not lie side by side.
 template <typename Stride>
-ROUNDEL_INLINE void average(const std::uint8_t* upper, const std::uint8_t* lower, Stride stride,
-                            int count, std::uint8_t* out) {
-  // Means of two that round up: what vector units have an instruction for.
+void average_apart(const std::uint8_t* upper, const std::uint8_t* lower, Stride stride, int count,
+                   std::uint8_t* out) {
   const auto mean = [](unsigned a, unsigned b) { return (a + b + 1) >> 1; };
+  unsigned here = mean(upper[0], lower[0]);
   for (int i = 0; i < count; ++i) {
-    const unsigned here = mean(upper[i * stride], lower[i * stride]);
     const unsigned next = mean(upper[(i + 1) * stride], lower[(i + 1) * stride]);
     out[i] = static_cast<std::uint8_t>(mean(here, next));
+    here = next;
   }
 }
 
-// Least and greatest level of every block.
-ROUNDEL_INLINE void bound_blocks(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,
-                                 std::uint8_t* high) {
-  using simd::Byte16;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    Byte16 least, greatest;
-    __builtin_memcpy(&least, line + b * kBlock, sizeof least);
-    greatest = least;
-    const auto fold = [&](const Byte16& l, const Byte16& g) {
-      least = l < least ? l : least;
-      greatest = g > greatest ? g : greatest;
-    };
-    fold(
-        __builtin_shufflevector(least, least, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7),
-        __builtin_shufflevector(greatest, greatest, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5,
-                                6, 7));
-    fold(
-        __builtin_shufflevector(least, least, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11),
-        __builtin_shufflevector(greatest, greatest, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9,
-                                10, 11));
-    fold(
-        __builtin_shufflevector(least, least, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13),
-        __builtin_shufflevector(greatest, greatest, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15,
-                                12, 13));
-    low[b] = std::min(least[0], least[1]);
-    high[b] = std::max(greatest[0], greatest[1]);
-  }
-}
-
-// Bit i: pixel i of a block is darker than the threshold.
-ROUNDEL_INLINE std::uint32_t dark_bits(const std::uint8_t* block, int threshold) {
-  using simd::Byte16;
-  Byte16 levels;
-  __builtin_memcpy(&levels, block, sizeof levels);
-  const Byte16 limit = Byte16{} + static_cast<std::uint8_t>(threshold);
-  const auto darker = (levels < limit) & 1;
-  std::array<std::uint64_t, 2> halves;
-  __builtin_memcpy(halves.data(), &darker, sizeof darker);
-  // Gathers the lowest bit of each byte in the uppermost byte.
-  constexpr std::uint64_t kGather = 0x0102040810204080;
-  return static_cast<std::uint32_t>((halves[0] * kGather) >> 56U) |
-         static_cast<std::uint32_t>((halves[1] * kGather) >> 56U) << 8U;
-}
-
-// What is worth compiling for wider vectors as well; the results are the same.
-struct LineKernels {
-  void (*average)(const std::uint8_t* upper, const std::uint8_t* lower, int count,
-                  std::uint8_t* out);
-  void (*bound)(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,
-                std::uint8_t* high);
-};
-
-#define ROUNDEL_LINE_KERNELS(suffix, attribute)                                                    \
-  attribute void average_##suffix(const std::uint8_t* upper, const std::uint8_t* lower, int count, \
-                                  std::uint8_t* out) {                                             \
-    average(upper, lower, std::integral_constant<std::ptrdiff_t, 1>{}, count, out);                \
-  }                                                                                                \
-  attribute void bound_##suffix(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,   \
-                                std::uint8_t* high) {                                              \
-    bound_blocks(line, blocks, low, high);                                                         \
-  }
-
-ROUNDEL_LINE_KERNELS(baseline, )
-#if defined(__x86_64__)
-ROUNDEL_LINE_KERNELS(avx2, __attribute__((target("avx2"))))
-#endif
-
-const LineKernels& line_kernels() {
-  static const LineKernels best = [] {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return LineKernels{average_avx2, bound_avx2};
-#endif
-    return LineKernels{average_baseline, bound_baseline};
-  }();
-  return best;
+// Bit i: flag i of 64 is set.
+std::uint64_t flag_bits(const std::uint8_t* flags) {
+  return ~bits_of_64_below(flags, 1);
 }
 
 }  // namespace
 
 void RowScanner::smooth(const LumaView& frame, int v, int u0, int u1) {
   const int count = u1 - u0 + 1;
-  const int blocks = (count + kBlock - 1) / kBlock;
-  line_.resize(static_cast<std::size_t>(blocks) * kBlock);
+  blocks_ = static_cast<std::size_t>((count + kBlock - 1) / kBlock);
+  const std::size_t padded = (blocks_ + kBlocksAtOnce - 1) / kBlocksAtOnce * kBlocksAtOnce;
+  line_.resize(padded * kBlock);
+  for (auto* bytes : {&threshold_, &middle_, &contrasted_, &crossing_}) bytes->resize(padded);
+  block_min_.resize(padded + 2);
+  block_max_.resize(padded + 2);
   std::uint8_t* out = line_.data();
   const std::uint8_t* upper = frame.row(v) + u0 * frame.pixel_stride;
   const std::uint8_t* lower = frame.row(v + 1) + u0 * frame.pixel_stride;
   if (frame.pixel_stride == 1) {
     line_kernels().average(upper, lower, count - 1, out);
   } else if (frame.pixel_stride == 2) {
-    average(upper, lower, std::integral_constant<std::ptrdiff_t, 2>{}, count - 1, out);
+    average_apart(upper, lower, std::integral_constant<std::ptrdiff_t, 2>{}, count - 1, out);
   } else {
-    average(upper, lower, frame.pixel_stride, count - 1, out);
+    average_apart(upper, lower, frame.pixel_stride, count - 1, out);
   }
-  // The last pixel has no right neighbour; the rest only fills the last block.
+  // The last pixel has no right neighbour; the rest only fills the last blocks.
   const std::uint8_t last = count > 1 ? out[count - 2] : *upper;
   std::fill(line_.begin() + (count - 1), line_.end(), last);
 }
 
 void RowScanner::find_runs(int contrast) {
-  const std::size_t blocks = line_.size() / kBlock;
-  block_min_.resize(blocks + 2);
-  block_max_.resize(blocks + 2);
-  line_kernels().bound(line_.data(), blocks, block_min_.data() + 1, block_max_.data() + 1);
+  const LineKernels& kernels = line_kernels();
+  const std::size_t padded = line_.size() / kBlock;
+  kernels.bound(line_.data(), padded, block_min_.data() + 1, block_max_.data() + 1);
   // A guard on both sides, so that every block has two neighbours.
   block_min_.front() = block_min_[1];
   block_max_.front() = block_max_[1];
-  block_min_.back() = block_min_[blocks];
-  block_max_.back() = block_max_[blocks];
+  block_min_.back() = block_min_[padded];
+  block_max_.back() = block_max_[padded];
+  kernels.judge(block_min_.data(), block_max_.data(), padded, static_cast<std::uint8_t>(contrast),
+                {threshold_.data(), middle_.data(), contrasted_.data(), crossing_.data()});
 
   run_ends_.clear();
-  int threshold = -1;  // none yet
-  bool dark = false;
   first_run_dark_ = false;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const int here_low = block_min_[b + 1], here_high = block_max_[b + 1];
-    const int low = std::min({block_min_[b], block_min_[b + 1], block_min_[b + 2]});
-    const int high = std::max({block_max_[b], block_max_[b + 1], block_max_[b + 2]});
-    const bool contrasted = high - low >= contrast;
-    if (contrasted) threshold = (low + high + 1) / 2;
-    if (threshold < 0) continue;
-    const int start = static_cast<int>(b) * kBlock;
-    if (!contrasted || here_low >= threshold || here_high < threshold) {
-      const bool is_dark = (here_low + here_high) / 2 < threshold;
-      if (is_dark != dark) {
-        if (start > 0) run_ends_.push_back(start);
+  bool dark = false, known = false;  // a threshold, from some block on
+  std::uint8_t threshold = 0;
+  for (std::size_t word = 0; word < blocks_; word += 64) {
+    const std::size_t rest = blocks_ - word;
+    const std::uint64_t all = rest >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << rest) - 1;
+    const std::uint64_t contrasted = flag_bits(contrasted_.data() + word) & all;
+    std::uint64_t left = all;  // blocks still to be looked at
+    if (!known) {
+      if (contrasted == 0) continue;
+      left &= ~std::uint64_t{0} << std::countr_zero(contrasted);
+      known = true;
+    }
+    while (left != 0) {
+      const auto first = static_cast<unsigned>(std::countr_zero(left));
+      if (((contrasted >> first) & 1U) == 0) {
+        // Up to the next contrast the last threshold holds; a block has one colour.
+        const std::uint64_t here = left & ~contrasted;
+        const std::uint64_t beyond = left & contrasted;
+        const std::uint64_t stretch = beyond == 0 ? here : here & ((beyond & (~beyond + 1)) - 1);
+        const std::uint64_t bits = bits_of_64_below(middle_.data() + word, threshold);
+        std::uint64_t before = bits << 1U;
+        before = (before & ~(std::uint64_t{1} << first)) | std::uint64_t{dark ? 1U : 0U} << first;
+        for (std::uint64_t changes = (bits ^ before) & stretch; changes != 0;
+             changes &= changes - 1) {
+          run_ends_.push_back(static_cast<std::int32_t>(word + std::countr_zero(changes)) * kBlock);
+        }
+        dark = ((bits >> (63 - std::countl_zero(stretch))) & 1U) != 0;
+        left &= ~stretch;
+        continue;
+      }
+      const std::size_t block = word + first;
+      const int start = static_cast<int>(block) * kBlock;
+      threshold = threshold_[block];
+      if (crossing_[block] != 0) {
+        const std::uint32_t bits = bits_below(line_.data() + start, threshold);
+        // A set bit: the pixel's colour is not that of the pixel before.
+        std::uint32_t changes = bits ^ ((bits << 1U) | (dark ? 1U : 0U));
+        if (start == 0) {
+          first_run_dark_ = (bits & 1U) != 0;
+          changes &= ~1U;
+        }
+        for (changes &= 0xFFFFU; changes != 0; changes &= changes - 1) {
+          run_ends_.push_back(start + std::countr_zero(changes));
+        }
+        dark = ((bits >> (kBlock - 1)) & 1U) != 0;
+      } else {
+        const bool is_dark = middle_[block] < threshold;
+        if (start == 0) {
+          first_run_dark_ = is_dark;
+        } else if (is_dark != dark) {
+          run_ends_.push_back(start);
+        }
         dark = is_dark;
       }
-    } else {
-      const std::uint32_t bits = dark_bits(line_.data() + start, threshold);
-      // A set bit: the pixel's colour is not that of the pixel before.
-      std::uint32_t changes = bits ^ ((bits << 1U) | (dark ? 1U : 0U));
-      changes &= 0xFFFFU;
-      for (; changes != 0; changes &= changes - 1) {
-        const int u = start + std::countr_zero(changes);
-        if (u > 0) run_ends_.push_back(u);
-      }
-      dark = ((bits >> (kBlock - 1)) & 1U) != 0;
-      if (start == 0) first_run_dark_ = (bits & 1U) != 0;
-      continue;
+      left &= left - 1;
     }
-    if (start == 0) first_run_dark_ = dark;
   }
-  run_ends_.push_back(static_cast<std::int32_t>(line_.size()));
+  run_ends_.push_back(static_cast<std::int32_t>(blocks_ * kBlock));
 }
 
 std::span<const Seed> RowScanner::scan(const LumaView& frame, int v, int u0, int u1, int contrast,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,7 +34,9 @@ class RowScanner {
   void find_runs(int contrast);
 
   std::vector<std::uint8_t> line_;  // the smoothed row from u0 on
+  std::size_t blocks_ = 0;          // that have pixels; the buffers go on with some without
   std::vector<std::uint8_t> block_min_, block_max_;
+  std::vector<std::uint8_t> threshold_, middle_, contrasted_, crossing_;  // LineKernels::BlockLooks
   std::vector<std::int32_t> run_ends_;  // one past each run's last pixel; colours alternate
   bool first_run_dark_ = false;
   std::vector<Seed> seeds_;

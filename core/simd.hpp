@@ -10,7 +10,6 @@ namespace roundel::simd {
 constexpr int kLanes = 8;
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
-using Byte16 = std::uint8_t __attribute__((vector_size(16)));
 
 #define ROUNDEL_INLINE inline __attribute__((always_inline))
 

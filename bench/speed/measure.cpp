@@ -146,7 +146,8 @@ Timings time_missing(Experiment experiment) {
   }
   return {series.timing(experiment, "roundel", "one of them missing",
                         found_after < 0 ? std::string("not found again")
-                                        : fmt::format("found again in frame {}", found_after))};
+                                        : fmt::format("found again in frame {}", found_after),
+                        found_after > 0 && found_after <= kSoon)};
 }
 
 Timings time_light_drop(const Experiment& experiment) {

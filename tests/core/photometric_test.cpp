@@ -97,6 +97,26 @@ TEST_CASE("within a marker the lens patch is as good as the exact inverse of the
   }
 }
 
+TEST_CASE("many pixels at once get the patch's points, the same by any vector unit") {
+  const auto patch = LensPatch::make(small_camera(), {140, 40}, 60);
+  REQUIRE(patch.has_value());
+  std::vector<float> du, dv;
+  for (int i = 0; i < 64; ++i) {
+    du.push_back(static_cast<float>(i % 8 * 10 - 35));
+    dv.push_back(static_cast<float>(i / 8 * 10 - 35));
+  }
+  std::vector<float> x = du, y = dv, other_x = du, other_y = dv;
+  remove_lens(patch->cubic(), x.data(), y.data(), 64);
+  remove_lens(patch->cubic(), other_x.data(), other_y.data(), 64, VectorUnit::kBaseline);
+  CHECK(x == other_x);
+  CHECK(y == other_y);
+  for (std::size_t i = 0; i < 64; ++i) {
+    const Eigen::Vector2d expected = patch->normalise(du[i], dv[i]) - patch->normalise(0, 0);
+    CHECK(std::abs(x[i] - expected.x()) < 1e-7);
+    CHECK(std::abs(y[i] - expected.y()) < 1e-7);
+  }
+}
+
 TEST_CASE("from a disturbed start the fit comes back to the painted pose") {
   const CameraModel camera = small_camera();
   Random random(31);
@@ -326,10 +346,13 @@ TEST_CASE("vector units give the same sums to the bit") {
       const bool inner = kind % 2 == 1;
       KernelCase c = kernel_case(16, inner ? 0.2 : 0.85, inner ? 0.75 : 1.15);
       c.model.boxed = kind >= 2;
-      PhotometricSums best, baseline;
+      PhotometricSums best, next, baseline;
       const AddPixels add = inner ? add_inner_pixels : add_outer_pixels;
       add(c.model, c.columns(), unknowns, best, VectorUnit::kBest);
+      add(c.model, c.columns(), unknowns, next, VectorUnit::kNextBest);
       add(c.model, c.columns(), unknowns, baseline, VectorUnit::kBaseline);
+      CHECK(best.normal_matrix == next.normal_matrix);
+      CHECK(best.right_side == next.right_side);
       CHECK(best.squares == baseline.squares);
       CHECK(best.normal_matrix == baseline.normal_matrix);
       CHECK(best.right_side == baseline.right_side);

@@ -2,10 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <queue>
 #include <vector>
 
 #include "core/grey_image.hpp"
+#include "core/line_kernels.hpp"
 #include "core/row_scanner.hpp"
 #include "tests/random.hpp"
 
@@ -182,4 +184,50 @@ TEST_CASE("the noise estimate follows the noise, not the edges") {
     }
     CHECK(estimate_noise(image.view()) == doctest::Approx(sigma).epsilon(0.15));
   }
+}
+
+TEST_CASE("what a row's blocks look like is the same by any vector unit, and by plain counting") {
+  constexpr std::size_t kBlocks = 2 * LineKernels::kBlocksAtOnce;
+  constexpr std::size_t kPixels = kBlocks * LineKernels::kBlock;
+  Random random(77);
+  const auto bytes = [&](std::size_t count) {
+    std::vector<std::uint8_t> made(count);
+    for (auto& byte : made) byte = static_cast<std::uint8_t>(random.integer(0, 255));
+    return made;
+  };
+  const auto upper = bytes(kPixels + 1), lower = bytes(kPixels + 1);
+  std::vector<std::vector<std::uint8_t>> results;
+  for (const VectorUnit unit : {VectorUnit::kBest, VectorUnit::kNextBest, VectorUnit::kBaseline}) {
+    const LineKernels& kernels = line_kernels(unit);
+    std::vector<std::uint8_t> line(kPixels), low(kBlocks + 2), high(kBlocks + 2);
+    kernels.average(upper.data(), lower.data(), kPixels, line.data());
+    // Calmer toward the end, so that blocks of all kinds occur.
+    for (std::size_t i = 0; i < kPixels; ++i)
+      line[i] = static_cast<std::uint8_t>(line[i] >> (i / 512));
+    kernels.bound(line.data(), kBlocks, low.data() + 1, high.data() + 1);
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      const auto first = line.begin() + static_cast<std::ptrdiff_t>(b * LineKernels::kBlock);
+      const auto [least, greatest] = std::minmax_element(first, first + LineKernels::kBlock);
+      REQUIRE(low[b + 1] == *least);
+      REQUIRE(high[b + 1] == *greatest);
+    }
+    std::vector<std::uint8_t> looks(4 * kBlocks);
+    std::uint8_t* out = looks.data();
+    kernels.judge(low.data(), high.data(), kBlocks, 20,
+                  {out, out + kBlocks, out + 2 * kBlocks, out + 3 * kBlocks});
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      const int l = std::min({low[b], low[b + 1], low[b + 2]});
+      const int h = std::max({high[b], high[b + 1], high[b + 2]});
+      const int half = (l + h + 1) / 2;
+      REQUIRE(looks[b] == half);
+      REQUIRE(looks[kBlocks + b] == (low[b + 1] + high[b + 1]) / 2);
+      REQUIRE(looks[2 * kBlocks + b] == (h - l >= 20 ? 255 : 0));
+      REQUIRE(looks[3 * kBlocks + b] ==
+              (h - l >= 20 && low[b + 1] < half && high[b + 1] >= half ? 255 : 0));
+    }
+    results.push_back(line);
+    results.back().insert(results.back().end(), looks.begin(), looks.end());
+  }
+  CHECK(results[0] == results[2]);
+  CHECK(results[1] == results[2]);
 }

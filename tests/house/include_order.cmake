@@ -11,7 +11,7 @@ set(simulator_may_use core)
 set(daemon_may_use core calibration config transport simulator)
 set(tools_may_use core calibration config transport simulator daemon)
 set(packaging_may_use config daemon tools)
-set(bench_may_use core simulator transport)
+set(bench_may_use core calibration simulator transport)
 
 set(faults "")
 set(checked 0)

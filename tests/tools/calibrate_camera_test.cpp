@@ -120,7 +120,8 @@ TEST_CASE("what can't be calibrated is refused in one line that says what to do"
   save_png(directory.file("small.png"), picture.view());
   const std::string calibrate = "calibrate camera ";
   check_refused("calibrate", 2, "subcommand");
-  check_refused("calibrate camera", 2, "FILE is required");
+  check_refused("calibrate camera --socket " + directory.file("none.sock"), 1,
+                "roundeld can't be reached at");
   check_refused(calibrate + "none.png", 1, "none.png");
   check_refused(calibrate + pictures().one(0) + directory.file("small.png"), 1,
                 "small.png is 320x200, but the pictures before it are 640x360; a calibration holds "

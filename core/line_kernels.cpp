@@ -1,0 +1,166 @@
+#include "core/line_kernels.hpp"
+
+#include <utility>
+
+#include "core/simd.hpp"
+
+namespace roundel {
+
+namespace {
+
+ROUNDEL_INLINE void average_line(const std::uint8_t* upper, const std::uint8_t* lower, int count,
+                                 std::uint8_t* out) {
+  // Means of two that round up: what vector units have an instruction for.
+  const auto mean = [](unsigned a, unsigned b) __attribute__((always_inline)) {
+    return (a + b + 1) >> 1;
+  };
+  for (int i = 0; i < count; ++i) {
+    const unsigned here = mean(upper[i], lower[i]);
+    const unsigned next = mean(upper[i + 1], lower[i + 1]);
+    out[i] = static_cast<std::uint8_t>(mean(here, next));
+  }
+}
+
+// A register of kBytes; each lane of 16 bytes works on blocks of its own.
+template <int kBytes>
+struct Register {
+  using Type __attribute__((vector_size(kBytes))) = std::uint8_t;
+};
+template <int kBytes>
+using Bytes = typename Register<kBytes>::Type;
+
+// Byte i of the lower (upper) half of every lane of two registers in turn.
+constexpr int interleaved(int i, int bytes, bool upper_half) {
+  const int lane = i / 16 * 16, within = i % 16;
+  return lane + (upper_half ? 8 : 0) + within / 2 + (within % 2) * bytes;
+}
+template <int kBytes, bool kUpper, int... i>
+ROUNDEL_INLINE Bytes<kBytes> interleave(const Bytes<kBytes>& a, const Bytes<kBytes>& b,
+                                        std::integer_sequence<int, i...> /*bytes*/) {
+  return __builtin_shufflevector(a, b, interleaved(i, kBytes, kUpper)...);
+}
+
+// One step of reducing many registers at once: what two registers have of their blocks is folded to
+// half and put into one.
+template <int kBytes, typename Fold>
+ROUNDEL_INLINE Bytes<kBytes> merge(const Bytes<kBytes>& a, const Bytes<kBytes>& b,
+                                   const Fold& fold) {
+  constexpr std::make_integer_sequence<int, kBytes> kAll;
+  return fold(interleave<kBytes, false>(a, b, kAll), interleave<kBytes, true>(a, b, kAll));
+}
+
+// From 16 registers, one for each block of a lane, to one, of a byte a block. The last step's
+// neighbours end side by side, so that registers eight apart are merged first.
+template <int kBytes, typename Fold>
+ROUNDEL_INLINE void reduce(Bytes<kBytes>* registers, int count, const Fold& fold,
+                           std::uint8_t* out) {
+  for (; count > 1; count /= 2) {
+    for (int k = 0; k < count / 2; ++k) {
+      registers[k] = merge<kBytes>(registers[k], registers[k + count / 2], fold);
+    }
+  }
+  __builtin_memcpy(out, registers, kBytes);
+}
+
+template <int kBytes>
+ROUNDEL_INLINE void bound_line(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,
+                               std::uint8_t* high) {
+  using V = Bytes<kBytes>;
+  constexpr int kBlock = LineKernels::kBlock, kLanes = kBytes / 16;
+  const auto least = [](const V& a, const V& b) __attribute__((always_inline)) {
+    return a < b ? a : b;
+  };
+  const auto greatest = [](const V& a, const V& b) __attribute__((always_inline)) {
+    return a > b ? a : b;
+  };
+  constexpr std::make_integer_sequence<int, kBytes> kAll;
+  for (std::size_t b = 0; b < blocks; b += 16 * kLanes) {
+    const std::uint8_t* from = line + b * kBlock;
+    V lows[8], highs[8];  // NOLINT(modernize-avoid-c-arrays): of vector types
+    for (int k = 0; k < 8; ++k) {
+      V first, second;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const std::uint8_t* block = from + (16 * lane + k) * kBlock;
+        __builtin_memcpy(reinterpret_cast<char*>(&first) + 16 * lane, block, 16);
+        __builtin_memcpy(reinterpret_cast<char*>(&second) + 16 * lane, block + 8 * kBlock, 16);
+      }
+      const V left = interleave<kBytes, false>(first, second, kAll);
+      const V right = interleave<kBytes, true>(first, second, kAll);
+      lows[k] = least(left, right);
+      highs[k] = greatest(left, right);
+    }
+    reduce<kBytes>(lows, 8, least, low + b);
+    reduce<kBytes>(highs, 8, greatest, high + b);
+  }
+}
+
+template <int kBytes>
+ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high,
+                               std::size_t blocks, std::uint8_t contrast,
+                               const LineKernels::BlockLooks& looks) {
+  using V = Bytes<kBytes>;
+  const auto load = [](const std::uint8_t* from) __attribute__((always_inline)) {
+    V bytes;
+    __builtin_memcpy(&bytes, from, kBytes);
+    return bytes;
+  };
+  const auto store = [](const V& bytes, std::uint8_t* to) __attribute__((always_inline)) {
+    __builtin_memcpy(to, &bytes, kBytes);
+  };
+  const auto least = [](const V& a, const V& b) __attribute__((always_inline)) {
+    return a < b ? a : b;
+  };
+  const auto greatest = [](const V& a, const V& b) __attribute__((always_inline)) {
+    return a > b ? a : b;
+  };
+  const V none{}, all = ~none, wanted = none + contrast;
+  for (std::size_t i = 0; i < blocks; i += kBytes) {
+    const V here_low = load(low + i + 1), here_high = load(high + i + 1);
+    const V l = least(least(load(low + i), here_low), load(low + i + 2));
+    const V h = greatest(greatest(load(high + i), here_high), load(high + i + 2));
+    const V half = (l | h) - ((l ^ h) >> 1);  // rounded up
+    const V contrasted = h - l >= wanted ? all : none;
+    store(half, looks.threshold + i);
+    store((here_low & here_high) + ((here_low ^ here_high) >> 1), looks.middle + i);
+    store(contrasted, looks.contrasted + i);
+    store(here_low < half ? (here_high >= half ? contrasted : none) : none, looks.crossing + i);
+  }
+}
+
+#define ROUNDEL_LINE_KERNELS(suffix, attribute, bytes)                                             \
+  attribute void average_##suffix(const std::uint8_t* upper, const std::uint8_t* lower, int count, \
+                                  std::uint8_t* out) {                                             \
+    average_line(upper, lower, count, out);                                                        \
+  }                                                                                                \
+  attribute void bound_##suffix(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,   \
+                                std::uint8_t* high) {                                              \
+    bound_line<bytes>(line, blocks, low, high);                                                    \
+  }                                                                                                \
+  attribute void judge_##suffix(const std::uint8_t* low, const std::uint8_t* high,                 \
+                                std::size_t blocks, std::uint8_t contrast,                         \
+                                const LineKernels::BlockLooks& looks) {                            \
+    judge_line<bytes>(low, high, blocks, contrast, looks);                                         \
+  }                                                                                                \
+  constexpr LineKernels k_kernels_##suffix{average_##suffix, bound_##suffix, judge_##suffix};
+
+ROUNDEL_LINE_KERNELS(baseline, , 16)
+#if defined(__x86_64__)
+ROUNDEL_LINE_KERNELS(avx2, __attribute__((target("avx2"))), 32)
+ROUNDEL_LINE_KERNELS(avx512,
+                     __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq,"
+                                           "prefer-vector-width=512"))),
+                     64)
+#endif
+
+}  // namespace
+
+const LineKernels& line_kernels(VectorUnit unit) {
+#if defined(__x86_64__)
+  static const int width = widest_vectors();
+  if (unit == VectorUnit::kBest && width >= 512) return k_kernels_avx512;
+  if (unit != VectorUnit::kBaseline && width >= 256) return k_kernels_avx2;
+#endif
+  return k_kernels_baseline;
+}
+
+}  // namespace roundel

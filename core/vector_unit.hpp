@@ -1,0 +1,25 @@
+#pragma once
+
+namespace roundel {
+
+// Which vector instructions are used; the results are the same to the bit.
+enum class VectorUnit {
+  kBest,      // the widest that the processor has
+  kNextBest,  // the one before it, if it has several
+  kBaseline   // what every processor of the platform has
+};
+
+// Bits of the widest vector instructions beyond the baseline that kernels are compiled for and this
+// processor has; 0 without.
+inline int widest_vectors() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq")) {
+    return 512;
+  }
+  if (__builtin_cpu_supports("avx2")) return 256;
+#endif
+  return 0;
+}
+
+}  // namespace roundel
