@@ -75,6 +75,8 @@ struct ControlSettings {
 
 struct LcmSettings {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  std::string interface_name;       // of the network, for multicast; empty: as the routes say
+  std::vector<std::string> copies;  // URLs that every message goes to besides
   std::string channel = "ROUNDEL";  // prefix of all channels
   bool per_marker = false;
   int max_datagram = 1400;  // bytes

@@ -35,6 +35,12 @@ bool is_printable(FieldTarget value) {
   return true;
 }
 
+bool is_interface(FieldTarget value) {
+  const std::string& name = *std::get<std::string*>(value);
+  return std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isgraph(c) != 0 && c != '/' && c != ':'; });
+}
+
 bool is_response(FieldTarget value) {
   const std::string& name = *std::get<std::string*>(value);
   return name == "auto" || ResponseCurve::named(name);
@@ -149,6 +155,9 @@ constexpr std::array kFields = {
     Field{"detector.min_id_probability", ROUNDEL_TARGET(detector.min_id_probability), 0, 1},
 
     Field{"lcm.url", ROUNDEL_TARGET(lcm.url), 1, 1000},
+    Field{"lcm.interface", ROUNDEL_TARGET(lcm.interface_name), 0, 15, is_interface,
+          "the name of a network interface, as in wlan0 (ip link lists them), or nothing"},
+    Field{"lcm.copies", ROUNDEL_TARGET(lcm.copies)},
     Field{"lcm.channel", ROUNDEL_TARGET(lcm.channel), 1, 40, is_channel,
           "1 to 40 of the characters A-Z a-z 0-9 _ - /"},
     Field{"lcm.per_marker", ROUNDEL_TARGET(lcm.per_marker)},

@@ -57,7 +57,11 @@ void Track::update(const Observation& seen_now, int id_count) {
   threshold = seen_now.segment.threshold;
   missed = 0;
   seen = true;
-  implausible = seen_now.plausible ? 0 : implausible + 1;
+  // The name that is known already can't be read off anything but the marker, whatever shadows do
+  // to the residuals.
+  const IdEvidence::Name name = evidence.best(id_count);
+  const bool known = name.id > 0 && name.id == seen_now.id && name.probability >= kSureName;
+  implausible = seen_now.plausible || known ? 0 : implausible + 1;
   // A picture that bears the known word out says as much for it as a reading.
   evidence.add(seen_now.id, seen_now.id_probability, id_count);
   if (seen_now.pose_count == 0) return;

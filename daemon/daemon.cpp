@@ -122,7 +122,8 @@ Daemon::Wakeup Daemon::wait() {
           descriptors[3].revents != 0};
 }
 
-// The way of a frame: take the newest, track, give back, publish.
+// The way of a frame: take the newest, track, give back, publish. A picture that somebody wants is
+// copied after that, so that no pose waits for it.
 bool Daemon::carry_frame() {
   std::optional<FrameLease> lease = parts_.source->next();
   if (parts_.source->state() != information_.camera) take_state();
@@ -137,9 +138,10 @@ bool Daemon::carry_frame() {
     fit_tracker(frame.luma.width, frame.luma.height);
   }
   const std::span<const Marker> markers = parts_.tracker->track(frame.luma);
-  // Somebody who looks waits for the copy; robots don't.
+  // Somebody who looks or records waits for the copy; robots don't.
   const bool looked_at = control_.wants_picture();
-  if (!looked_at) lease->give_back();
+  if (recording_ && recording_->closed()) recording_.reset();
+  if (!looked_at && !recording_) lease->give_back();
   const std::span<const ArenaPose> arena = arena_.locate(markers);
   times.tracked_us = now().mono_us;
 
@@ -151,22 +153,39 @@ bool Daemon::carry_frame() {
   parts_.broadcast->publish(information_, markers, arena);
   times.published_us = now().mono_us;
   statistics_.add(times, markers.size());
-  leave_snapshot(markers, arena, looked_at ? &frame.luma : nullptr);
+  if (recording_) record(frame.luma, markers, arena);
+  fill(control_.next_snapshot(), markers, arena, looked_at ? &frame.luma : nullptr);
+  control_.offer_snapshot();
   frame_carried_ = true;
   return true;
 }
 
 // For everything that happens beside the frames. Copies into memory that is kept.
-void Daemon::leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
-                            const LumaView* picture) {
-  FrameSnapshot& snapshot = control_.next_snapshot();
+void Daemon::fill(FrameSnapshot& snapshot, std::span<const Marker> markers,
+                  std::span<const ArenaPose> arena, const LumaView* picture) {
   snapshot.has_picture = picture != nullptr;
   if (snapshot.has_picture) copy(*picture, snapshot.picture);
   snapshot.information = information_;
   snapshot.markers.assign(markers.begin(), markers.end());
   snapshot.arena.assign(arena.begin(), arena.end());
   snapshot.context = arena_.context();
-  control_.offer_snapshot();
+}
+
+void Daemon::record(const LumaView& luma, std::span<const Marker> markers,
+                    std::span<const ArenaPose> arena) {
+  RecordingQueue::Entry* const entry = recording_->back();
+  if (entry == nullptr) return;
+  fill(entry->frame, markers, arena, &luma);
+  recording_->push();
+}
+
+void Daemon::start_recording(std::shared_ptr<RecordingQueue> queue, bool restart) {
+  recording_ = std::move(queue);
+  if (!restart) return;
+  // The calibration fits or not; only frames of another size change that.
+  const bool fits = information_.calibration == CalibrationState::kValid;
+  parts_.tracker.emplace(make_tracker(parts_.configuration, fits ? parts_.camera : std::nullopt));
+  begin_session();
 }
 
 // Subscribers hear of a lost camera at once. What was tracked before it was lost is not expected
@@ -325,16 +344,15 @@ void Daemon::begin_session() {
 void Daemon::log_summary() const {
   const Configuration& values = parts_.configuration.values;
   const LcmUrl url = parse_lcm_url(values.lcm.url);
-  const bool multicast = url.provider == LcmUrl::Provider::kUdpMulticast;
   StartUpFacts facts{values, information_, parts_.source->description()};
   facts.arena = arena_calibration_.get();
-  if (multicast) facts.route = find_route(url.address, url.port);
+  if (url.provider == LcmUrl::Provider::kUdp) facts.route = find_route(url.address, url.port);
   struct stat lens {};
   if (::stat(values.camera.calibration.c_str(), &lens) == 0) {
     facts.lens_written_s = static_cast<double>(lens.st_mtim.tv_sec);
   }
   for (const std::string& line : start_up_summary(facts)) log_info("{}", line);
-  if (multicast && url.ttl == 0) {
+  if (url.is_multicast() && url.ttl == 0) {
     log_warning(
         "lcm.url has ttl=0: poses stay on this machine; ttl=1 lets them out to the local "
         "network");

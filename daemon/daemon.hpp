@@ -43,11 +43,13 @@ class Daemon final : private LoopControl {
   };
 
   void start(Parts parts);
+  Configuration configuration() override { return parts_.configuration.values; }
   std::string reload() override;
   std::string try_to_reload();
   void set_arena(std::shared_ptr<const ArenaCalibration> calibration) override;
   void set_arena_moved(bool moved) override;
   std::shared_ptr<CameraControls> camera_controls() override;
+  void start_recording(std::shared_ptr<RecordingQueue> queue, bool restart) override;
   void begin_session();
   void log_summary() const;
   void report_state();
@@ -61,8 +63,10 @@ class Daemon final : private LoopControl {
   void fit_tracker(int width, int height);
   void load_arena_file();
   void fit_arena();
-  void leave_snapshot(std::span<const Marker> markers, std::span<const ArenaPose> arena,
-                      const LumaView* picture);
+  void fill(FrameSnapshot& snapshot, std::span<const Marker> markers,
+            std::span<const ArenaPose> arena, const LumaView* picture);
+  void record(const LumaView& luma, std::span<const Marker> markers,
+              std::span<const ArenaPose> arena);
   void publish_status();
   DropCounts drops_of_session() const;
   void tell_service_manager();
@@ -91,7 +95,8 @@ class Daemon final : private LoopControl {
   std::shared_ptr<const ArenaCalibration> arena_calibration_;
   std::string told_arena_problem_;
   ArenaStage arena_;
-  ControlCenter control_;  // last: its threads end first
+  std::shared_ptr<RecordingQueue> recording_;  // while somebody records
+  ControlCenter control_;                      // last: its threads end first
 };
 
 }  // namespace roundel

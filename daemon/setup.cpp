@@ -115,6 +115,11 @@ Broadcast make_broadcast(const LoadedConfiguration& configuration) {
 
 void check_broadcast(const LoadedConfiguration& configuration) {
   try {
+    BroadcastTargets::check_copies(configuration.values.lcm);
+  } catch (const LcmUrlError& error) {
+    throw configuration.error("lcm.copies", error.what());
+  }
+  try {
     Broadcast::check(configuration.values.lcm, configuration.values.camera.name);
   } catch (const LcmUrlError& error) {
     throw configuration.error("lcm.url", error.what());

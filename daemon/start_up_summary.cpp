@@ -85,8 +85,13 @@ std::string network_line(const StartUpFacts& facts) {
   const LcmSettings& lcm = facts.values.lcm;
   const LcmUrl url = parse_lcm_url(lcm.url);
   std::string line = fmt::format("poses: {}_FRAME on {}", lcm.channel, lcm.url);
-  if (url.provider != LcmUrl::Provider::kUdpMulticast) return line;
-  line += fmt::format(", TTL {}", url.ttl);
+  if (url.provider != LcmUrl::Provider::kUdp) return line;
+  if (!lcm.copies.empty()) line += fmt::format(", and copies to {}", fmt::join(lcm.copies, ", "));
+  if (url.is_multicast()) {
+    line += fmt::format(", TTL {}", url.ttl);
+    if (!lcm.interface_name.empty())
+      return line + fmt::format(", by interface {}", lcm.interface_name);
+  }
   if (facts.route.error != 0) return line + ", without a route yet";
   line += fmt::format(", by interface {}", facts.route.interface);
   return facts.route.address.empty() ? line : line + fmt::format(" ({})", facts.route.address);

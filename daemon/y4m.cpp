@@ -124,8 +124,22 @@ Y4mFormat parse_header(std::string_view header) {
   return format;
 }
 
-FilePointer open_file(const std::string& path, const char* mode) {
-  FilePointer file(std::fopen(path.c_str(), mode));
+// Of "FRAME XN=12 XT=1700000000000000"; damaged stamps are none.
+std::optional<Y4mStamp> parse_stamp(std::string_view line) {
+  const auto number_behind = [&](std::string_view tag) -> std::optional<std::int64_t> {
+    const std::size_t at = line.find(tag);
+    if (at == std::string_view::npos) return std::nullopt;
+    const std::string_view text = line.substr(at + tag.size());
+    return parse<std::int64_t>(text.substr(0, text.find(' ')));
+  };
+  const auto number = number_behind(" XN=");
+  const auto utime = number_behind(" XT=");
+  if (!number || !utime || *number < 0 || *utime < 0) return std::nullopt;
+  return Y4mStamp{*number, *utime};
+}
+
+FilePointer open_file(const std::string& path) {
+  FilePointer file(std::fopen(path.c_str(), "rbe"));
   if (!file) {
     throw std::runtime_error(fmt::format("{} can't be opened: {}", path, std::strerror(errno)));
   }
@@ -136,7 +150,7 @@ FilePointer open_file(const std::string& path, const char* mode) {
 
 Y4mReader::Y4mReader(const std::string& path)
     : name_(path == "-" ? "standard input" : path),
-      file_(path == "-" ? nullptr : open_file(path, "rbe")),
+      file_(path == "-" ? nullptr : open_file(path)),
       stream_(file_ ? file_.get() : stdin) {
   line_.reserve(kMaxLine);
   try {
@@ -190,6 +204,7 @@ bool Y4mReader::next(GreyImage& frame) {
       (line_.size() > kFrame.size() && line_[kFrame.size()] != ' ')) {
     fail(std::feof(stream_) != 0 ? "is truncated" : "does not start with FRAME");
   }
+  stamp_ = parse_stamp(line_);
   frame.resize(format_.width, format_.height);
   if (std::fread(frame.pixels.data(), 1, frame.pixels.size(), stream_) != frame.pixels.size()) {
     fail("is truncated");
@@ -207,49 +222,34 @@ bool Y4mReader::next(GreyImage& frame) {
 }
 
 Y4mWriter::Y4mWriter(const std::string& path, int width, int height, double frames_per_second)
-    : name_(path == "-" ? "standard output" : path),
-      file_(path == "-" ? nullptr : open_file(path, "wbe")),
-      stream_(file_ ? file_.get() : stdout),
-      width_(width),
-      height_(height) {
+    : file_(path), width_(width), height_(height) {
   // Whole rates as they are, others to a thousandth.
   const bool whole = frames_per_second == std::floor(frames_per_second);
   const std::int64_t base = whole ? 1 : 1000;
-  fmt::print(stream_, "{} W{} H{} F{}:{} Ip A1:1 Cmono\n", kMagic, width, height,
-             std::llround(frames_per_second * static_cast<double>(base)), base);
+  file_.append(fmt::format("{} W{} H{} F{}:{} Ip A1:1 Cmono\n", kMagic, width, height,
+                           std::llround(frames_per_second * static_cast<double>(base)), base));
 }
 
-void Y4mWriter::write(const LumaView& frame) {
+void Y4mWriter::write(const LumaView& frame, const std::optional<Y4mStamp>& stamp) {
   if (frame.width != width_ || frame.height != height_) {
     throw std::runtime_error(fmt::format("{}: a frame of {}x{} does not fit into video of {}x{}",
-                                         name_, frame.width, frame.height, width_, height_));
+                                         file_.name(), frame.width, frame.height, width_, height_));
   }
+  const std::string head =
+      stamp ? fmt::format("{} XN={} XT={}\n", kFrame, stamp->number, stamp->utime)
+            : fmt::format("{}\n", kFrame);
   const auto row_bytes = static_cast<std::size_t>(width_);
-  row_.resize(row_bytes);
-  bool good = std::fputs("FRAME\n", stream_) >= 0;
-  for (int v = 0; good && v < height_; ++v) {
-    const std::uint8_t* row = frame.row(v);
-    if (frame.pixel_stride != 1) {
-      for (int u = 0; u < width_; ++u) {
-        row_[static_cast<std::size_t>(u)] = frame.at(u, v);
-      }
-      row = row_.data();
-    }
-    good = std::fwrite(row, 1, row_bytes, stream_) == row_bytes;
+  const std::size_t bytes = row_bytes * static_cast<std::size_t>(height_);
+  if (frame.pixel_stride == 1 && frame.row_stride == width_) {
+    file_.append(head, {reinterpret_cast<const char*>(frame.data), bytes});
+    return;
   }
-  if (!good) {
-    fail();
+  pixels_.resize(bytes);
+  char* out = pixels_.data();
+  for (int v = 0; v < height_; ++v) {
+    for (int u = 0; u < width_; ++u) *out++ = static_cast<char>(frame.at(u, v));
   }
-}
-
-void Y4mWriter::close() {
-  if (std::fflush(stream_) != 0 || std::ferror(stream_) != 0) {
-    fail();
-  }
-}
-
-void Y4mWriter::fail() const {
-  throw std::runtime_error(fmt::format("{} can't be written: {}", name_, std::strerror(errno)));
+  file_.append(head, {pixels_.data(), bytes});
 }
 
 }  // namespace roundel

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/grey_image.hpp"
 #include "core/luma_view.hpp"
+#include "daemon/append_file.hpp"
 #include "daemon/file_pointer.hpp"
 
 namespace roundel {
@@ -21,6 +23,13 @@ struct Y4mFormat {
   }
 };
 
+// What a recording says about a frame, behind the word FRAME ("XN=12 XT=1700000000000000"); other
+// readers pass over it.
+struct Y4mStamp {
+  std::int64_t number = 0;  // of the frame at its source
+  std::int64_t utime = 0;   // of its capture, microseconds since the Unix epoch
+};
+
 // Reads raw video (YUV4MPEG2, 8 bits: 4:2:0, 4:1:1, 4:2:2, 4:4:4, mono) as luma, frame by frame.
 // All errors are std::runtime_error that names the file, and the frame counted from 0.
 class Y4mReader {
@@ -30,6 +39,8 @@ class Y4mReader {
 
   const Y4mFormat& format() const { return format_; }
   std::int64_t frames_read() const { return frames_read_; }
+  // Of the frame read last; nothing if the file has none.
+  const std::optional<Y4mStamp>& stamp() const { return stamp_; }
 
   // The next frame; false at the end of the stream. Allocates only to size the image.
   bool next(GreyImage& frame);
@@ -43,29 +54,30 @@ class Y4mReader {
   std::FILE* stream_ = nullptr;
   Y4mFormat format_;
   std::int64_t frames_read_ = 0;
+  std::optional<Y4mStamp> stamp_;
   std::string line_;
 };
 
-// Writes luma-only raw video (YUV4MPEG2, Cmono). Errors are std::runtime_error that names the file.
+// Writes luma-only raw video (YUV4MPEG2, Cmono). Errors are std::runtime_error that names the file;
+// what has been written until then is whole frames.
 class Y4mWriter {
  public:
   // Opens the file ("-": standard output) and writes the header.
   Y4mWriter(const std::string& path, int width, int height, double frames_per_second);
 
   // The frame must have the size given.
-  void write(const LumaView& frame);
+  void write(const LumaView& frame, const std::optional<Y4mStamp>& stamp = {});
 
-  // Flushes, and tells of errors that a destructor would have to swallow.
-  void close();
+  // The frame written last was never there.
+  void take_back() { file_.take_back(); }
+
+  // Tells of errors that a destructor would have to swallow.
+  void close() { file_.close(); }
 
  private:
-  [[noreturn]] void fail() const;
-
-  std::string name_;
-  FilePointer file_;  // owns; empty for standard output
-  std::FILE* stream_ = nullptr;
+  AppendFile file_;
   int width_, height_;
-  std::vector<std::uint8_t> row_;
+  std::vector<char> pixels_;  // of a frame whose pixels lie apart
 };
 
 }  // namespace roundel

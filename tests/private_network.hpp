@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "transport/lcm_link.hpp"
+#include "transport/message_sender.hpp"
 
 namespace roundel {
 
@@ -32,7 +32,7 @@ inline bool multicast_is_private() {
   const std::string outside = outside_interface();
   if (outside.empty()) {
     try {
-      open_lcm("udpm://239.255.76.67:7667?ttl=0", LcmUse::kSend);
+      open_sender("udpm://239.255.76.67:7667?ttl=0");
       return true;
     } catch (const LcmUnavailable& error) {
       reason = error.what();

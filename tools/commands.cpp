@@ -15,6 +15,10 @@ void add_commands(CLI::App& app) {
   add_reload(app);
   add_snapshot(app);
   add_controls(app);
+  add_record(app);
+  add_export(app);
+  add_doctor(app);
+  add_report(app);
   add_cameras(app);
 }
 

@@ -24,6 +24,10 @@ void add_reload(CLI::App& app);
 void add_snapshot(CLI::App& app);
 void add_controls(CLI::App& app);
 void add_cameras(CLI::App& app);
+void add_record(CLI::App& app);
+void add_export(CLI::App& app);
+void add_doctor(CLI::App& app);
+void add_report(CLI::App& app);
 
 // All of them, in the order in which they are listed.
 void add_commands(CLI::App& app);

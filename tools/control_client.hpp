@@ -1,9 +1,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace roundel {
 
@@ -35,6 +37,11 @@ class ControlClient {
   nlohmann::ordered_json get(const std::string& path) const;
   nlohmann::ordered_json send(const std::string& method, const std::string& path,
                               const nlohmann::ordered_json& body) const;
+
+  // By POST, a body without end: `take` is given it piece by piece, until it returns false or roundeld ends;
+  // what it throws comes out here. `go_on` is asked besides, at least once a second.
+  void stream(const std::string& path, const std::function<bool(std::string_view)>& take,
+              const std::function<bool()>& go_on) const;
 
  private:
   std::string socket_;

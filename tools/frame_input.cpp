@@ -1,6 +1,7 @@
 #include "tools/frame_input.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace roundel {
@@ -23,9 +24,11 @@ bool FrameInput::next(GreyImage& frame) {
     if (video_) {
       const std::int64_t number = video_->frames_read();
       if (video_->next(frame)) {
-        ++frame_;
-        utime_ =
-            std::llround(1e6 * static_cast<double>(number) / video_->format().frames_per_second());
+        const std::optional<Y4mStamp>& stamp = video_->stamp();
+        frame_ = stamp ? stamp->number : frame_ + 1;
+        utime_ = stamp ? stamp->utime
+                       : std::llround(1e6 * static_cast<double>(number) /
+                                      video_->format().frames_per_second());
         return true;
       }
       video_.reset();

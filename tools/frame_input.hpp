@@ -24,7 +24,8 @@ class FrameInput {
   bool next(GreyImage& frame);
 
   // Of the frame read last: its file as given, its number from 0 over all files, and its time since
-  // the start of the video (0 for images).
+  // the start of the video (0 for images); what was recorded by `roundel record` has the number and
+  // the time of its capture.
   const std::string& source() const { return files_[file_]; }
   std::int64_t frame() const { return frame_; }
   std::int64_t utime() const { return utime_; }

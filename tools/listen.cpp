@@ -15,6 +15,8 @@
 #include "daemon/signal_descriptor.hpp"
 #include "tools/commands.hpp"
 #include "tools/pose_table.hpp"
+#include "tools/reception_summary.hpp"
+#include "tools/standard_output.hpp"
 #include "transport/lcm_url.hpp"
 #include "transport/subscriber.hpp"
 
@@ -26,7 +28,9 @@ using Json = nlohmann::ordered_json;
 struct ListenOptions {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   std::string channel = "ROUNDEL";
+  std::string interface_name;
   bool json = false;
+  bool summary = false;  // nothing else
   double seconds = std::numeric_limits<double>::infinity();
 };
 
@@ -68,6 +72,7 @@ Json received_json(const ReceivedFrame& frame, const ReceptionCounts& counts,
   json["receive_utime"] = received_utime;
   json["dropped"] = header.dropped;
   json["lost"] = counts.lost;
+  json["latency_us"] = received_utime - header.capture_utime;
   json["simulated"] = header.simulated != 0;
   return json;
 }
@@ -104,7 +109,7 @@ class Screen {
 
 std::unique_ptr<Subscriber> subscribe(const ListenOptions& options) {
   try {
-    return std::make_unique<Subscriber>(open_lcm(options.url, LcmUse::kReceive), options.channel);
+    return std::make_unique<Subscriber>(options.url, options.channel, options.interface_name);
   } catch (const LcmUrlError& error) {
     throw UsageError(fmt::format("--url: {}", error.what()));
   } catch (const std::invalid_argument& error) {
@@ -140,19 +145,23 @@ void listen(const ListenOptions& options) {
   SignalDescriptor signals;
   const std::unique_ptr<Subscriber> subscriber = subscribe(options);
   PoseTable table;
+  ReceptionSummary summary;
   Screen screen;
   std::int64_t markers = 0, poses = 0;
+  const bool shows_table = !options.json && !options.summary;
   const std::int64_t start_us = steady_us();
   const bool endless = options.seconds == std::numeric_limits<double>::infinity();
   const std::int64_t end_us = endless ? std::numeric_limits<std::int64_t>::max()
                                       : start_us + static_cast<std::int64_t>(options.seconds * 1e6);
   std::int64_t draw_us = start_us + screen.period_us();
   while (steady_us() < end_us) {
-    if (!wait(signals, *subscriber, options.json ? end_us : std::min(end_us, draw_us))) break;
+    if (!wait(signals, *subscriber, shows_table ? std::min(end_us, draw_us) : end_us)) break;
     while (const ReceivedFrame* frame = subscriber->next_frame(std::chrono::milliseconds(0))) {
       for (const marker_t& marker : frame->markers) poses += marker.has_pose != 0 ? 1 : 0;
       markers += static_cast<std::int64_t>(frame->markers.size());
       const std::int64_t received_utime = subscriber->received_utime();
+      summary.add(*frame, received_utime, steady_us());
+      if (options.summary) continue;
       if (options.json) {
         fmt::print("{}", json_line(received_json(*frame, subscriber->counts(), received_utime)));
         std::fflush(stdout);
@@ -160,10 +169,15 @@ void listen(const ListenOptions& options) {
         table.add(*frame, subscriber->counts(), received_utime, steady_us());
       }
     }
-    if (!options.json && steady_us() >= draw_us) {
+    if (shows_table && steady_us() >= draw_us) {
       screen.draw(table.text(screen.max_rows(), steady_us()));
       draw_us = steady_us() + screen.period_us();
     }
+  }
+  if (options.summary && options.json) {
+    print(json_line(summary.json(subscriber->counts())));
+  } else if (!options.json) {
+    print(summary.text(subscriber->counts()));
   }
   require_poses(options, subscriber->counts().frames, markers, poses);
 }
@@ -179,7 +193,13 @@ void add_listen(CLI::App& app) {
   command->add_option("--channel", options->channel, "Prefix of the channels")
       ->type_name("PREFIX")
       ->capture_default_str();
+  command
+      ->add_option("--interface", options->interface_name,
+                   "Network interface to listen at (default: as the routes say)")
+      ->type_name("NAME");
   command->add_flag("--json", options->json, "One JSON object a frame");
+  command->add_flag("--summary", options->summary,
+                    "Only say at the end: rate, losses, latency (with --json, one object)");
   command->add_option("--seconds", options->seconds, "End after so long (default: at Ctrl-C)")
       ->check(CLI::Range(0.001, 1e9))
       ->type_name("N");

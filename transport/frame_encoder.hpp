@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "transport/message_sender.hpp"
 #include "transport/messages.hpp"
 
 namespace roundel {
-
-using Bytes = std::span<const std::uint8_t>;
 
 // What LCM puts in front of a message that fits one datagram: 8 bytes, the channel, a zero.
 std::size_t lcm_overhead(const std::string& channel);

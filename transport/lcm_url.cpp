@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kAccepted =
     "accepted: udpm://ADDRESS:PORT?ttl=N with a multicast address (224.0.0.0 to 239.255.255.255), "
-    "memq://, file://PATH?mode=w";
+    "udpm://ADDRESS:PORT with a machine's address, memq://, file://PATH?mode=w";
 
 [[noreturn]] void fail(const std::string& url, std::string_view what) {
   throw LcmUrlError(fmt::format("\"{}\" is no usable LCM URL: {}; {}", url, what, kAccepted));
@@ -43,8 +43,8 @@ void read_network(const std::string& url, std::string_view network, LcmUrl& pars
   if (::inet_pton(AF_INET, address.c_str(), &binary) != 1) {
     fail(url, fmt::format("\"{}\" is not an IPv4 address", address));
   }
-  if (!IN_MULTICAST(ntohl(binary.s_addr))) {
-    fail(url, fmt::format("{} is not a multicast address", address));
+  if (binary.s_addr == INADDR_ANY || binary.s_addr == INADDR_BROADCAST) {
+    fail(url, fmt::format("{} is nobody's address", address));
   }
   parsed.address = address;
   if (network.empty()) return;
@@ -57,12 +57,14 @@ void read_option(const std::string& url, std::string_view name, std::string_view
                  LcmUrl& parsed) {
   constexpr int kMaxTtl = 255, kMaxBuffer = 1 << 30;
   using enum LcmUrl::Provider;
-  if (parsed.provider == kUdpMulticast && name == "ttl") {
+  if (parsed.provider == kUdp && name == "ttl") {
     const std::optional<int> ttl = whole_number(value, kMaxTtl);
     if (!ttl) fail(url, "ttl must be 0 to 255");
     parsed.ttl = *ttl;
-  } else if (parsed.provider == kUdpMulticast && name == "recv_buf_size") {
-    if (!whole_number(value, kMaxBuffer)) fail(url, "recv_buf_size must be a number of bytes");
+  } else if (parsed.provider == kUdp && name == "recv_buf_size") {
+    const std::optional<int> bytes = whole_number(value, kMaxBuffer);
+    if (!bytes) fail(url, "recv_buf_size must be a number of bytes");
+    parsed.receive_buffer = *bytes;
   } else if (parsed.provider == kLogFile && name == "mode") {
     if (value != "w" && value != "r") fail(url, "mode must be r or w");
     parsed.writing = value == "w";
@@ -75,12 +77,27 @@ void read_option(const std::string& url, std::string_view name, std::string_view
 
 }  // namespace
 
+bool LcmUrl::is_multicast() const {
+  in_addr binary{};
+  return provider == Provider::kUdp && ::inet_pton(AF_INET, address.c_str(), &binary) == 1 &&
+         IN_MULTICAST(ntohl(binary.s_addr));
+}
+
+void require_group(const std::string& text, const LcmUrl& url) {
+  if (url.is_multicast()) return;
+  throw LcmUrlError(
+      fmt::format("\"{}\" is for sending to one machine; that machine listens at any multicast URL "
+                  "with the same "
+                  "port, as in udpm://239.255.76.67:{}",
+                  text, url.port));
+}
+
 LcmUrl parse_lcm_url(const std::string& url) {
   LcmUrl parsed;
   std::string_view rest = url;
   if (url.find('\0') != std::string::npos) fail(url, "it has a zero byte in it");
   if (rest.starts_with("udpm://")) {
-    parsed.provider = LcmUrl::Provider::kUdpMulticast;
+    parsed.provider = LcmUrl::Provider::kUdp;
   } else if (rest.starts_with("memq://")) {
     parsed.provider = LcmUrl::Provider::kMemory;
   } else if (rest.starts_with("file://")) {
@@ -90,7 +107,7 @@ LcmUrl parse_lcm_url(const std::string& url) {
   }
   rest.remove_prefix(rest.find("://") + 3);
   const std::string_view target = take(rest, "?");
-  if (parsed.provider == LcmUrl::Provider::kUdpMulticast) read_network(url, target, parsed);
+  if (parsed.provider == LcmUrl::Provider::kUdp) read_network(url, target, parsed);
   if (parsed.provider == LcmUrl::Provider::kLogFile && target.empty()) fail(url, "no path");
   while (!rest.empty()) {
     std::string_view value = take(rest, "&,");

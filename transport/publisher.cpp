@@ -2,8 +2,8 @@
 
 namespace roundel {
 
-Publisher::Publisher(LcmLink link, const PublisherParameters& parameters)
-    : link_(std::move(link)),
+Publisher::Publisher(std::shared_ptr<MessageSender> sender, const PublisherParameters& parameters)
+    : sender_(std::move(sender)),
       frames_(parameters.channel + "_FRAME", parameters.camera, parameters.max_datagram),
       status_channel_(parameters.channel + "_STATUS") {
   if (parameters.per_marker) poses_.emplace(parameters.channel);
@@ -36,8 +36,7 @@ void Publisher::publish(const status_t& status) {
 }
 
 bool Publisher::send(const char* channel, Bytes message) {
-  return ::lcm_publish(link_.get(), channel, message.data(),
-                       static_cast<unsigned int>(message.size())) == 0;
+  return sender_->send(channel, message);
 }
 
 }  // namespace roundel

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "transport/frame_encoder.hpp"
 #include "transport/lcm_link.hpp"
+#include "transport/message_sender.hpp"
 #include "transport/pose_encoder.hpp"
 
 namespace roundel {
@@ -24,7 +26,9 @@ struct PublisherParameters {
 class Publisher {
  public:
   // Throws std::invalid_argument if max_datagram is too small.
-  Publisher(LcmLink link, const PublisherParameters& parameters);
+  Publisher(std::shared_ptr<MessageSender> sender, const PublisherParameters& parameters);
+  Publisher(LcmLink link, const PublisherParameters& parameters)
+      : Publisher(std::make_shared<LcmSender>(std::move(link)), parameters) {}
 
   // Sends all parts of a frame, then the single poses. Sets the publish time in both clocks and
   // returns it. Every frame goes out, also without markers.
@@ -41,7 +45,7 @@ class Publisher {
  private:
   bool send(const char* channel, Bytes message);
 
-  LcmLink link_;
+  std::shared_ptr<MessageSender> sender_;
   FrameEncoder frames_;
   std::optional<PoseEncoder> poses_;
   std::string status_channel_;

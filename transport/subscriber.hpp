@@ -7,15 +7,18 @@
 #include <string>
 
 #include "transport/frame_assembler.hpp"
-#include "transport/lcm_link.hpp"
+#include "transport/message_receiver.hpp"
 
 namespace roundel {
 
 // Receives what a Publisher sends. Not thread-safe. Whatever else arrives is counted and ignored.
 class Subscriber {
  public:
-  // Throws std::runtime_error if the link can't receive, std::invalid_argument for a channel prefix
-  // that LCM can't have.
+  // At a URL, for multicast at a network interface (open_receiver()). Throws what that throws, and
+  // std::invalid_argument for a channel prefix that LCM can't have.
+  Subscriber(const std::string& url, const std::string& channel_prefix,
+             const std::string& interface_name = {});
+  // On a link that is shared with a publisher, within one process.
   Subscriber(LcmLink link, const std::string& channel_prefix);
   ~Subscriber();
   Subscriber(const Subscriber&) = delete;

@@ -11,7 +11,7 @@ Timings time_publishing(const Experiment& experiment, const std::string& lcm_url
   constexpr int kWarmUp = 20;
   Painter painter(experiment, whycode_print(experiment));
   Tracker tracker(roundel_parameters(experiment, true), experiment.camera);
-  Publisher publisher(open_lcm(lcm_url, LcmUse::kSend), {.camera = "bench"});
+  Publisher publisher(open_sender(lcm_url), {.camera = "bench"});
   std::vector<double> publishing;
   GreyImage picture;
   for (int i = 0; i < std::ssize(experiment.views); ++i) {

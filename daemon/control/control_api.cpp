@@ -6,6 +6,8 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
+#include "config/writer.hpp"
+#include "daemon/control/ask_loop.hpp"
 #include "daemon/control/controls_json.hpp"
 #include "daemon/control/snapshot_picture.hpp"
 #include "daemon/control/state_json.hpp"
@@ -17,7 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 10s;        // with the frame loop: a reload may read many files
 constexpr auto kPicturePatience = 3s;  // with the camera
 
 enum Status {
@@ -33,7 +34,7 @@ enum Status {
 
 HttpResponse json_answer(int status, const Json& json) {
   return {status, "application/json",
-          json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", "", false};
+          json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", "", nullptr};
 }
 
 HttpResponse error_answer(int status, const std::string& what) {
@@ -44,22 +45,6 @@ std::pair<PictureFormat, const char*> picture_kind(const std::string& path) {
   if (path.ends_with(".png")) return {PictureFormat::kPng, "image/png"};
   if (path.ends_with(".pgm")) return {PictureFormat::kPgm, "image/x-portable-graymap"};
   return {PictureFormat::kJpeg, "image/jpeg"};
-}
-
-// Runs something on the frame loop's thread and waits for what it returns.
-template <typename Call>
-auto on_loop(LoopCommands& loop, Call call) -> decltype(call(std::declval<LoopControl&>())) {
-  using Result = decltype(call(std::declval<LoopControl&>()));
-  // Shared: if nobody waits any more, the result goes nowhere.
-  auto promise = std::make_shared<std::promise<Result>>();
-  std::future<Result> future = promise->get_future();
-  loop.post([promise = std::move(promise), call](LoopControl& control) {
-    promise->set_value(call(control));
-  });
-  if (future.wait_for(kPatience) != std::future_status::ready) {
-    throw std::runtime_error("roundeld is busy");
-  }
-  return future.get();  // throws if the loop has ended
 }
 
 }  // namespace
@@ -79,6 +64,8 @@ std::span<const ControlApi::Route> ControlApi::routes() {
       Route{"/v1/frame.jpg", "GET", &ControlApi::picture},
       Route{"/v1/frame.png", "GET", &ControlApi::picture},
       Route{"/v1/frame.pgm", "GET", &ControlApi::picture},
+      Route{"/v1/recording", "POST", &ControlApi::record},
+      Route{"/v1/configuration", "GET", &ControlApi::configuration},
       Route{"/v1/controls", "GET", &ControlApi::controls},
       Route{"/v1/controls", "PUT", &ControlApi::set_controls},
       Route{"/v1/calibration", "GET", &ControlApi::calibration},
@@ -133,7 +120,8 @@ HttpResponse ControlApi::markers(const HttpRequest& /*request*/) {
 
 HttpResponse ControlApi::events(const HttpRequest& /*request*/) {
   HttpResponse response;
-  response.event_stream = true;
+  response.type = "text/event-stream";
+  response.stream = events_.listen();
   return response;
 }
 
@@ -149,8 +137,29 @@ HttpResponse ControlApi::picture(const HttpRequest& request) {
   return response;
 }
 
+HttpResponse ControlApi::record(const HttpRequest& request) {
+  const auto frame = view_.frame();
+  if (!frame) return error_answer(kUnavailable, "no frame has come from the camera yet");
+  HttpResponse response;
+  response.type = "application/x-roundel-recording";
+  try {
+    response.stream = recordings_.start(*frame, view_.status().frame_rate, !request.keep_tracks);
+  } catch (const std::future_error&) {  // a logic_error too
+    throw;
+  } catch (const std::logic_error& error) {
+    return error_answer(kConflict, error.what());
+  }
+  return response;
+}
+
+HttpResponse ControlApi::configuration(const HttpRequest& /*request*/) {
+  const Configuration values =
+      ask_loop(loop_, [](LoopControl& control) { return control.configuration(); });
+  return json_answer(kOk, {{"yaml", configuration_yaml(values)}});
+}
+
 std::shared_ptr<CameraControls> ControlApi::camera_controls() {
-  return on_loop(loop_, [](LoopControl& control) { return control.camera_controls(); });
+  return ask_loop(loop_, [](LoopControl& control) { return control.camera_controls(); });
 }
 
 HttpResponse ControlApi::controls(const HttpRequest& /*request*/) {
@@ -218,7 +227,7 @@ HttpResponse ControlApi::forget_arena(const HttpRequest& /*request*/) {
 }
 
 HttpResponse ControlApi::reload(const HttpRequest& /*request*/) {
-  const std::string error = on_loop(loop_, [](LoopControl& control) { return control.reload(); });
+  const std::string error = ask_loop(loop_, [](LoopControl& control) { return control.reload(); });
   return error.empty() ? json_answer(kOk, Json::object()) : error_answer(kUnfit, error);
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "daemon/control/arena_service.hpp"
+#include "daemon/control/event_feed.hpp"
 #include "daemon/control/http_message.hpp"
 #include "daemon/control/loop_commands.hpp"
+#include "daemon/control/recording_service.hpp"
 #include "daemon/control/shared_view.hpp"
 
 namespace roundel {
@@ -11,8 +13,9 @@ namespace roundel {
 // are snapshots; what the frame loop has to do is posted to it, and waited for with patience's end.
 class ControlApi {
  public:
-  ControlApi(SharedView& view, ArenaService& arena, LoopCommands& loop)
-      : view_(view), arena_(arena), loop_(loop) {}
+  ControlApi(SharedView& view, ArenaService& arena, EventFeed& events, RecordingService& recordings,
+             LoopCommands& loop)
+      : view_(view), arena_(arena), events_(events), recordings_(recordings), loop_(loop) {}
 
   // Does not throw.
   HttpResponse handle(const HttpRequest& request);
@@ -23,6 +26,8 @@ class ControlApi {
   HttpResponse markers(const HttpRequest& request);
   HttpResponse events(const HttpRequest& request);
   HttpResponse picture(const HttpRequest& request);
+  HttpResponse record(const HttpRequest& request);
+  HttpResponse configuration(const HttpRequest& request);
   HttpResponse controls(const HttpRequest& request);
   HttpResponse set_controls(const HttpRequest& request);
   HttpResponse calibration(const HttpRequest& request);
@@ -35,6 +40,8 @@ class ControlApi {
 
   SharedView& view_;
   ArenaService& arena_;
+  EventFeed& events_;
+  RecordingService& recordings_;
   LoopCommands& loop_;
 
   struct Route;

@@ -24,7 +24,10 @@ constexpr int kNiceness = 10;
 }  // namespace
 
 ControlCenter::ControlCenter()
-    : arena_(commands_), api_(view_, arena_, commands_), thread_([this] { run(); }) {}
+    : arena_(commands_),
+      recordings_(commands_),
+      api_(view_, arena_, events_, recordings_, commands_),
+      thread_([this] { run(); }) {}
 
 ControlCenter::~ControlCenter() {
   {
@@ -72,6 +75,7 @@ void ControlCenter::run() {
     take_news();
     const std::int64_t now_us = now().mono_us;
     arena_.on_tick(now_us);
+    recordings_.on_tick();
     open_servers();
     if (now_us >= overdue_us) {
       each_server([](HttpServer& server) { server.end_overdue(); });
@@ -96,21 +100,12 @@ void ControlCenter::take_news() {
   // Slots keep the memory of old pictures.
   if (frame->has_picture) shown->picture = frame->picture;
   arena_.on_frame(*shown);
-  bool streams = false;
-  each_server([&](const HttpServer& server) { streams |= server.has_event_streams(); });
-  if (streams) {
-    auto text = std::make_shared<const std::string>(
-        "event: frame\ndata: " + json_line(markers_json(*shown)) + "\n");
-    const std::lock_guard lock(mutex_);
-    event_ = {++frames_seen_, std::move(text)};
+  if (events_.has_listeners()) {
+    events_.offer(std::make_shared<const std::string>(
+        "event: frame\ndata: " + json_line(markers_json(*shown)) + "\n"));
   }
   view_.show(std::move(shown));
-  each_server([](HttpServer& server) { server.wake_event_streams(); });
-}
-
-HttpEvent ControlCenter::newest_event() {
-  const std::lock_guard lock(mutex_);
-  return event_;
+  each_server([](HttpServer& server) { server.wake_streams(); });
 }
 
 void ControlCenter::open_servers() {
@@ -136,8 +131,7 @@ void ControlCenter::open_server() {
     }
     server_.emplace(
         socket_->take_descriptor(),
-        [this](const HttpRequest& request) { return api_.handle(request); },
-        [this] { return newest_event(); }, HttpLimits{});
+        [this](const HttpRequest& request) { return api_.handle(request); }, HttpLimits{});
   } catch (const std::runtime_error& error) {
     socket_.reset();
     log_warning("control.socket: {}; roundel status and the like can't reach this roundeld",
@@ -157,8 +151,7 @@ void ControlCenter::open_web_server() {
     limits.connections = 64;
     web_server_.emplace(
         std::move(socket.descriptor),
-        [gate](const HttpRequest& request) { return gate.handle(request); },
-        [this] { return newest_event(); }, limits);
+        [gate](const HttpRequest& request) { return gate.handle(request); }, limits);
     log_info("web page: {}{}", socket.url, served_.token.empty() ? "" : "?token=...");
   } catch (const std::runtime_error& error) {
     log_warning("control.web: {}; there is no web page", error.what());

@@ -9,10 +9,12 @@
 #include "daemon/control/arena_service.hpp"
 #include "daemon/control/control_api.hpp"
 #include "daemon/control/control_socket.hpp"
+#include "daemon/control/event_feed.hpp"
 #include "daemon/control/frame_snapshot.hpp"
 #include "daemon/control/http_server.hpp"
 #include "daemon/control/latest_value.hpp"
 #include "daemon/control/loop_commands.hpp"
+#include "daemon/control/recording_service.hpp"
 #include "daemon/control/shared_view.hpp"
 #include "daemon/control/wakeup.hpp"
 
@@ -56,7 +58,6 @@ class ControlCenter {
     if (server_) call(*server_);
     if (web_server_) call(*web_server_);
   }
-  HttpEvent newest_event();
 
   Wakeup news_;
   LatestValue<FrameSnapshot> frames_;
@@ -64,15 +65,15 @@ class ControlCenter {
   LoopCommands commands_;
   SharedView view_;
   ArenaService arena_;
+  EventFeed events_;
+  RecordingService recordings_;
   ControlApi api_;
 
-  std::mutex mutex_;  // of the three below
+  std::mutex mutex_;  // of the two below
   std::optional<ControlSettings> wanted_;
   bool ending_ = false;
-  HttpEvent event_;
 
   // Of the thread.
-  std::uint64_t frames_seen_ = 0;
   ControlSettings served_{"", "", "", ""};
   std::optional<ControlSocket> socket_;
   std::optional<HttpServer> server_, web_server_;

@@ -32,13 +32,11 @@ struct ConnectionState {
 }  // namespace
 
 struct HttpServer::Impl {
-  // One client's events: the newest each time it has taken the one before.
-  struct EventStream {
+  // A client that is being sent a stream.
+  struct Streaming {
     Impl* server = nullptr;
     MHD_Connection* connection = nullptr;
-    std::uint64_t seen = 0;
-    std::shared_ptr<const std::string> text;
-    std::size_t sent = 0;
+    std::unique_ptr<HttpStream> stream;
   };
 
   // An answer until its client has taken it.
@@ -48,7 +46,6 @@ struct HttpServer::Impl {
   };
 
   HttpHandler handler;
-  HttpEvents events;
   HttpLimits limits;
   std::atomic<bool> stopping{false};
   std::atomic<unsigned> streams{0};
@@ -56,21 +53,21 @@ struct HttpServer::Impl {
 
   std::mutex mutex;  // of the two below
   std::unordered_map<MHD_Connection*, ConnectionState> connections;
-  std::vector<MHD_Connection*> suspended;  // event streams without news
+  std::vector<MHD_Connection*> suspended;  // streams that have nothing to read
 
   MHD_Daemon* daemon = nullptr;
 
   MHD_Result handle(MHD_Connection* connection, const char* url, const char* method,
                     const char* upload, std::size_t* upload_size, void** state);
   MHD_Result answer(MHD_Connection* connection, HttpResponse response);
-  MHD_Result stream_events(MHD_Connection* connection);
+  MHD_Result answer_by_stream(MHD_Connection* connection, HttpResponse response);
   void note(MHD_Connection* connection, MHD_ConnectionNotificationCode code);
 };
 
 namespace {
 
 HttpResponse error_response(int status, const char* what) {
-  return {status, "application/json", std::string(R"({"error":")") + what + "\"}\n", "", false};
+  return {status, "application/json", std::string(R"({"error":")") + what + "\"}\n", "", nullptr};
 }
 
 }  // namespace
@@ -86,6 +83,7 @@ MHD_Result HttpServer::Impl::handle(MHD_Connection* connection, const char* url,
       return std::string(text == nullptr ? "" : text);
     };
     arriving->request.plain_picture = value(MHD_GET_ARGUMENT_KIND, "overlay") == "0";
+    arriving->request.keep_tracks = value(MHD_GET_ARGUMENT_KIND, "restart") == "0";
     arriving->request.token = value(MHD_GET_ARGUMENT_KIND, "token");
     arriving->request.host = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
     arriving->request.origin = value(MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
@@ -111,7 +109,7 @@ MHD_Result HttpServer::Impl::handle(MHD_Connection* connection, const char* url,
 }
 
 MHD_Result HttpServer::Impl::answer(MHD_Connection* connection, HttpResponse response) {
-  if (response.event_stream) return stream_events(connection);
+  if (response.stream) return answer_by_stream(connection, std::move(response));
   const std::size_t before = untaken, size = response.body.size();
   if (size > kSmallAnswer && before > 0 && before + size > limits.untaken) {
     response = error_response(503, "too many clients have not taken their answers");
@@ -140,46 +138,37 @@ MHD_Result HttpServer::Impl::answer(MHD_Connection* connection, HttpResponse res
   return result;
 }
 
-MHD_Result HttpServer::Impl::stream_events(MHD_Connection* connection) {
-  if (++streams > limits.event_streams) {
+MHD_Result HttpServer::Impl::answer_by_stream(MHD_Connection* connection, HttpResponse response) {
+  if (++streams > limits.streams) {
     --streams;
-    return answer(connection, error_response(503, "too many event streams"));
+    return answer(connection, error_response(503, "too many streams"));
   }
-  auto* const stream = new EventStream{this, connection, 0, nullptr, 0};
+  auto* const streaming = new Streaming{this, connection, std::move(response.stream)};
   const auto read = [](void* self, std::uint64_t, char* out, std::size_t room) -> ssize_t {
-    EventStream& s = *static_cast<EventStream*>(self);
-    if (s.text && s.sent == s.text->size()) s.text.reset();
-    if (!s.text) {
-      const std::lock_guard lock(s.server->mutex);
-      if (s.server->stopping) return MHD_CONTENT_READER_END_OF_STREAM;
-      const HttpEvent event = s.server->events();
-      if (!event.text || event.number == s.seen) {
-        MHD_suspend_connection(s.connection);
-        s.server->suspended.push_back(s.connection);
-        return 0;
-      }
-      s.seen = event.number;
-      s.text = event.text;
-      s.sent = 0;
+    Streaming& s = *static_cast<Streaming*>(self);
+    // Under the lock, so that no call to wake up is missed between looking and suspending.
+    const std::lock_guard lock(s.server->mutex);
+    if (s.server->stopping) return MHD_CONTENT_READER_END_OF_STREAM;
+    const std::size_t size = s.stream->read(out, room);
+    if (size == 0) {
+      MHD_suspend_connection(s.connection);
+      s.server->suspended.push_back(s.connection);
     }
-    const std::size_t size = std::min(room, s.text->size() - s.sent);
-    s.text->copy(out, size, s.sent);
-    s.sent += size;
     return static_cast<ssize_t>(size);
   };
   const auto free = [](void* self) {
-    auto* const s = static_cast<EventStream*>(self);
+    auto* const s = static_cast<Streaming*>(self);
     --s->server->streams;
     delete s;
   };
   constexpr std::size_t kBlock = 16384;
   MHD_Response* const made =
-      MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, kBlock, read, stream, free);
+      MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, kBlock, read, streaming, free);
   if (made == nullptr) {
-    free(stream);
+    free(streaming);
     return MHD_NO;
   }
-  MHD_add_response_header(made, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
+  MHD_add_response_header(made, MHD_HTTP_HEADER_CONTENT_TYPE, response.type.c_str());
   MHD_add_response_header(made, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
   {
     const std::lock_guard lock(mutex);
@@ -203,11 +192,9 @@ void HttpServer::Impl::note(MHD_Connection* connection, MHD_ConnectionNotificati
                              false};
 }
 
-HttpServer::HttpServer(UniqueFd listening, HttpHandler handler, HttpEvents events,
-                       const HttpLimits& limits)
+HttpServer::HttpServer(UniqueFd listening, HttpHandler handler, const HttpLimits& limits)
     : impl_(std::make_unique<Impl>()) {
   impl_->handler = std::move(handler);
-  impl_->events = std::move(events);
   impl_->limits = limits;
   const auto handle = [](void* self, MHD_Connection* connection, const char* url,
                          const char* method, const char*, const char* upload,
@@ -241,11 +228,11 @@ HttpServer::~HttpServer() {
     const std::lock_guard lock(impl_->mutex);
     impl_->stopping = true;
   }
-  wake_event_streams();
+  wake_streams();
   MHD_stop_daemon(impl_->daemon);
 }
 
-void HttpServer::wake_event_streams() {
+void HttpServer::wake_streams() {
   const std::lock_guard lock(impl_->mutex);
   for (MHD_Connection* const connection : impl_->suspended) MHD_resume_connection(connection);
   impl_->suspended.clear();
@@ -257,10 +244,6 @@ void HttpServer::end_overdue() {
   for (const auto& [connection, state] : impl_->connections) {
     if (!state.streams && state.since < latest) ::shutdown(state.descriptor, SHUT_RDWR);
   }
-}
-
-bool HttpServer::has_event_streams() const {
-  return impl_->streams > 0;
 }
 
 }  // namespace roundel

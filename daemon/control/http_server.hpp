@@ -11,7 +11,7 @@ namespace roundel {
 // What a client may cost.
 struct HttpLimits {
   unsigned connections = 512;
-  unsigned event_streams = 16;
+  unsigned streams = 16;
   std::size_t body = std::size_t{64} << 10;    // bytes of a request
   std::size_t memory = std::size_t{24} << 10;  // bytes of a connection: headers and buffers
   // Bytes of answers that clients have not taken yet, of all together; larger pictures are refused
@@ -26,16 +26,14 @@ struct HttpLimits {
 class HttpServer {
  public:
   // Throws std::runtime_error if the server can't be started.
-  HttpServer(UniqueFd listening, HttpHandler handler, HttpEvents events, const HttpLimits& limits);
+  HttpServer(UniqueFd listening, HttpHandler handler, const HttpLimits& limits);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  // To be called when there is a new event, and about once a second.
-  void wake_event_streams();
+  // To be called when streams may have something to read, and about once a second.
+  void wake_streams();
   void end_overdue();
-
-  bool has_event_streams() const;
 
  private:
   struct Impl;

@@ -7,17 +7,21 @@
 #include <vector>
 
 #include "calibration/arena_calibration.hpp"
+#include "config/configuration.hpp"
 #include "daemon/control/wakeup.hpp"
 
 namespace roundel {
 
 class CameraControls;
+class RecordingQueue;
 
 // What other threads may ask of the thread that carries frames; called on that thread, between
 // frames.
 class LoopControl {
  public:
   virtual ~LoopControl() = default;
+  // The configuration in use.
+  virtual Configuration configuration() = 0;
   // Empty, or why the configuration in use stays.
   virtual std::string reload() = 0;
   // Of the camera in use, for any thread; nullptr: the source has none.
@@ -25,6 +29,9 @@ class LoopControl {
   // nullptr: none any more.
   virtual void set_arena(std::shared_ptr<const ArenaCalibration> calibration) = 0;
   virtual void set_arena_moved(bool moved) = 0;
+  // Frames go into the queue from the next one on, until it is closed; with `restart`, as a session
+  // of their own, tracked as if there had been none before.
+  virtual void start_recording(std::shared_ptr<RecordingQueue> queue, bool restart) = 0;
 };
 
 using LoopCommand = std::function<void(LoopControl&)>;

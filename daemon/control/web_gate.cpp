@@ -10,7 +10,7 @@ namespace {
 constexpr int kSeeOther = 303, kUnauthorized = 401, kForbidden = 403;
 
 HttpResponse refusal(int status, const char* what) {
-  return {status, "application/json", std::string(R"({"error":")") + what + "\"}\n", "", false};
+  return {status, "application/json", std::string(R"({"error":")") + what + "\"}\n", "", nullptr};
 }
 
 // "localhost:8080", "127.0.0.1", "[::1]:8080"

@@ -7,7 +7,7 @@
 namespace roundel {
 
 Robot::Robot(const std::string& channel)
-    : subscriber_(open_lcm("udpm://239.255.76.67:7667?ttl=1", LcmUse::kReceive), channel) {}
+    : subscriber_("udpm://239.255.76.67:7667?ttl=1", channel) {}
 
 std::optional<std::int64_t> Robot::poses_after(std::int64_t instant_us) {
   constexpr std::int64_t kPatienceUs = 30'000'000;

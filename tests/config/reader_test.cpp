@@ -83,8 +83,8 @@ TEST_CASE("a wrong type is an error with its place and what is accepted") {
         std::string::npos);
   CHECK(error_for("camera: {name: [a]}\n").find("is not text") != std::string::npos);
   CHECK(error_for("lcm: 3\n") ==
-        "roundel.yaml:1:6: lcm: is not a section; accepted: keys url, channel, per_marker, "
-        "max_datagram");
+        "roundel.yaml:1:6: lcm: is not a section; accepted: keys url, interface, copies, "
+        "channel, per_marker, max_datagram");
   CHECK(
       error_for("- a\n").starts_with("roundel.yaml:1:1: is not a section; accepted: keys source"));
   CHECK(error_for("source: {a: 1}\n")

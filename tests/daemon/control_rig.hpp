@@ -71,6 +71,8 @@ class ControlRig final : public LoopControl {
     context_ = std::make_shared<const TrackingContext>(context);
   }
   void set_arena_moved(bool is) override { moved = is; }
+  Configuration configuration() override { return {}; }
+  void start_recording(std::shared_ptr<RecordingQueue>, bool) override {}
 
   void run() {
     std::int64_t due_ns = monotonic_ns();

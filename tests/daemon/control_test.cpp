@@ -193,7 +193,7 @@ TEST_CASE("answers that clients leave untaken don't fill the memory") {
         response.body.assign(request.path == "/large" ? std::size_t{4} << 20 : 100, 'x');
         return response;
       },
-      [] { return HttpEvent(); }, limits);
+      limits);
   std::vector<std::unique_ptr<UnixClient>> lazy;
   for (int i = 0; i < 3; ++i) {
     lazy.push_back(std::make_unique<UnixClient>(folder.file("a.sock")));
@@ -275,8 +275,7 @@ TEST_CASE("a client that says nothing is sent away") {
   HttpLimits limits;
   limits.idle = 1s;
   HttpServer server(
-      socket.take_descriptor(), [](const HttpRequest&) { return HttpResponse(); },
-      [] { return HttpEvent(); }, limits);
+      socket.take_descriptor(), [](const HttpRequest&) { return HttpResponse(); }, limits);
   const UnixClient silent(folder.file("a.sock"));
   const auto start = std::chrono::steady_clock::now();
   CHECK(silent.read_until("", 20s).empty());
@@ -289,8 +288,7 @@ TEST_CASE("a client that drips is cut off when its time is over") {
   HttpLimits limits;
   limits.whole = 0s;
   HttpServer server(
-      socket.take_descriptor(), [](const HttpRequest&) { return HttpResponse(); },
-      [] { return HttpEvent(); }, limits);
+      socket.take_descriptor(), [](const HttpRequest&) { return HttpResponse(); }, limits);
   const UnixClient dripping(folder.file("a.sock"));
   bool cut = false;
   for (int i = 0; i < 2000 && !cut; ++i) {

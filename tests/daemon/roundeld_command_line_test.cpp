@@ -82,12 +82,12 @@ TEST_CASE("wrong usage ends with 2 and one line") {
 
 TEST_CASE("an unusable LCM URL is refused with its place before anything starts") {
   const TemporaryDirectory folder;
-  const std::string path = folder.write("roundel.yaml", "lcm:\n  url: udpm://10.0.0.1:7667\n");
+  const std::string path = folder.write("roundel.yaml", "lcm:\n  url: udpm://300.0.0.1:7667\n");
   for (const char* mode : {"--check-config", "--set=camera.name=a"}) {
     check_refused(roundeld({"--config", path, mode}), 2,
                   path +
-                      ":2:8: lcm.url: \"udpm://10.0.0.1:7667\" is no usable LCM URL: 10.0.0.1 "
-                      "is not a multicast address");
+                      ":2:8: lcm.url: \"udpm://300.0.0.1:7667\" is no usable LCM URL: "
+                      "\"300.0.0.1\" is not an IPv4 address");
   }
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("roundeld sends the poses of a simulated arena and ends at SIGTERM wit
   if (!multicast_is_private()) return;
   constexpr int kPort = 7701;
   const TemporaryDirectory folder;
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", small_arena(kPort, 3))));
 
   const ReceivedFrame* frame =
@@ -94,7 +94,7 @@ TEST_CASE("roundeld sends frames also when nothing is seen") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7702;
   const TemporaryDirectory folder;
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", small_arena(kPort, 0))));
   for (int i = 0; i < 3; ++i) {
     const ReceivedFrame* frame = wait_for_frame(subscriber, [](const auto&) { return true; });
@@ -109,7 +109,7 @@ TEST_CASE("a wrong configuration at SIGHUP changes nothing, a right one takes ef
   if (!multicast_is_private()) return;
   constexpr int kPort = 7703;
   const TemporaryDirectory folder;
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   const std::string path = folder.write("roundel.yaml", small_arena(kPort, 1));
   ChildProcess daemon(command(path));
   const auto any = [](const ReceivedFrame&) { return true; };
@@ -165,7 +165,7 @@ TEST_CASE("roundeld started before the network waits for it") {
 TEST_CASE("roundeld waits for a camera that is not there, and says so to its subscribers") {
   if (!multicast_is_private()) return;
   constexpr int kPort = 7705;
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   ChildProcess daemon({ROUNDELD_BINARY, "--set", "source=camera", "--set",
                        "camera.device=/dev/v4l/by-id/none", "--set", "lcm.url=" + url(kPort)});
   CHECK(daemon.wait_for("no camera is at /dev/v4l/by-id/none", kPatience));
@@ -187,7 +187,7 @@ TEST_CASE("a recording is sent frame by frame to its end") {
   std::string video = "YUV4MPEG2 W32 H32 F30:1 Cmono\n";
   for (int i = 0; i < 20; ++i) video += "FRAME\n" + std::string(32 * 32, 'x');
   const std::string path = folder.write("a.y4m", video);
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   ChildProcess daemon({ROUNDELD_BINARY, "--set", "source=files", "--set",
                        "files.paths=[" + path + "]", "--set", "files.frame_rate=100", "--set",
                        "lcm.url=" + url(kPort)});
@@ -211,7 +211,7 @@ TEST_CASE("roundeld waits for a camera that is not there, through reloads, and e
     return "source: camera\ncamera: {device: " + pipe + more + "}\nlcm: {url: \"" + url(kPort) +
            "\"}\ncontrol: {socket: \"\"}\n";
   };
-  Subscriber subscriber(open_lcm(url(kPort), LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(url(kPort), "ROUNDEL");
   ChildProcess daemon(command(folder.write("roundel.yaml", config(""))));
   REQUIRE(daemon.wait_for("no camera is at " + pipe, kPatience));
   folder.write("roundel.yaml", config(", controls: {gain: 3}"));

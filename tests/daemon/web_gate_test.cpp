@@ -154,10 +154,8 @@ TEST_CASE("what a browser sends over TCP reaches the gate, and its answer the br
   WebSocket socket = listen_for_web(*parse_web_address("127.0.0.1:0"));
   const int port = std::stoi(socket.url.substr(17));
   const WebGate closed = gate(kToken);
-  const HttpServer server(
-      std::move(socket.descriptor),
-      [&](const HttpRequest& request) { return closed.handle(request); },
-      [] { return HttpEvent(); }, {});
+  const HttpServer server(std::move(socket.descriptor),
+                          [&](const HttpRequest& request) { return closed.handle(request); }, {});
   const auto ask = [port](const std::string& line, const std::string& headers) {
     const UniqueFd client(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     sockaddr_in address{};

@@ -31,7 +31,7 @@ std::vector<std::string> command(const TemporaryDirectory& folder, const CameraM
 
 DaemonUnderTest::DaemonUnderTest(const Film& film, const std::vector<std::string>& settings)
     : film_(film),
-      subscriber_(open_lcm(kUrl, LcmUse::kReceive), "ROUNDEL"),
+      subscriber_(kUrl, "ROUNDEL"),
       process_(command(folder_, film.camera(), settings)) {}
 
 bool DaemonUnderTest::receive(int timeout_ms, const std::function<bool()>& wanted) {

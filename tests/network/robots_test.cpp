@@ -83,7 +83,7 @@ struct Reception {
 
 Reception receive(std::chrono::seconds how_long) {
   Reception reception;
-  Subscriber subscriber(open_lcm(kUrl, LcmUse::kReceive), "ROUNDEL");
+  Subscriber subscriber(kUrl, "ROUNDEL");
   // Counting begins once frames flow.
   const auto begin = std::chrono::steady_clock::now();
   while (reception.first < 0 && std::chrono::steady_clock::now() < begin + 60s) {
@@ -239,7 +239,7 @@ TEST_CASE("a hundred robots at 60 frames/s reach two machines with TTL 1, whoeve
   hosts
       ->thread_on(kFirstRobot,
                   [&] {
-                    const Subscriber subscriber(open_lcm(kUrl, LcmUse::kReceive), "ROUNDEL");
+                    const Subscriber subscriber(kUrl, "ROUNDEL");
                     robot_listens = listens("thread-self");
                   })
       .join();

@@ -46,7 +46,7 @@ expect 'two words.png' roundel detect --json picture.png two
 expect $'picture.png\ntwo words.png' roundel track --camera ''
 expect '3d' roundel track --arena-mode 3
 expect '' roundel detect --bits ''
-expect $'lcm.channel=\nlcm.max_datagram=\nlcm.per_marker=\nlcm.url=' roundeld --set lcm.
+expect $'lcm.channel=\nlcm.copies=\nlcm.interface=\nlcm.max_datagram=\nlcm.per_marker=\nlcm.url=' roundeld --set lcm.
 expect $'camera\nfiles\nsimulator' roundeld --set source = ''
 expect 'true' roundeld --set lcm.per_marker = t
 expect $'false\ntrue' roundeld --set lcm.per_marker =

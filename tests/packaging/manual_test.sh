@@ -42,8 +42,11 @@ done
 
 tool=$(rendered roundel.1)
 while read -r command; do
+  what="roundel $command"
   # shellcheck disable=SC2086  # a command may be two words
-  same "roundel $command" "$(options_of "$programs/roundel" $command)" \
+  "$programs/roundel" $command --help | grep -q '^  -[^h]\|^  -h,[^-]\|^  --' || what+=" (without options)"
+  # shellcheck disable=SC2086
+  same "$what" "$(options_of "$programs/roundel" $command)" \
     "$(subsection "roundel $command" <<<"$tool" | tags)"
 done < <(commands_of "$programs/roundel")
 same "subcommands" "$(commands_of "$programs/roundel")" \

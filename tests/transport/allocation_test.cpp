@@ -45,7 +45,7 @@ TEST_CASE("publishing over UDP allocates nothing after warm-up") {
   PublisherParameters parameters;
   parameters.camera = "a camera with a long name";
   parameters.per_marker = true;
-  Publisher publisher(open_lcm("udpm://239.255.76.67:7667?ttl=0", LcmUse::kSend), parameters);
+  Publisher publisher(open_sender("udpm://239.255.76.67:7667?ttl=0"), parameters);
   status_t status{};
   status.source = "a simulator with a long description";
   const auto most = sample_markers(100);

@@ -25,11 +25,11 @@ constexpr const char* kUrl = "udpm://239.255.76.68:7670?ttl=0";
 
 TEST_CASE("100 markers go over real multicast in parts and arrive as one frame") {
   if (!multicast_is_private()) return;
-  Subscriber subscriber(open_lcm(kUrl, LcmUse::kReceive), "MULTICAST_TEST");
+  Subscriber subscriber(kUrl, "MULTICAST_TEST");
   PublisherParameters parameters;
   parameters.channel = "MULTICAST_TEST";
   parameters.camera = "ceiling";
-  Publisher publisher(open_lcm(kUrl, LcmUse::kSend), parameters);
+  Publisher publisher(open_sender(kUrl), parameters);
   for (std::int64_t number = 0; number < 20; ++number) {
     const auto markers = sample_markers(number % 2 == 0 ? 100 : 0);
     publisher.publish(sample_information(number), markers);
@@ -88,7 +88,7 @@ TEST_CASE("without a route to the multicast group the error says so") {
       ::_exit(kNoNamespace);
     }
     try {
-      open_lcm(kUrl, LcmUse::kSend);
+      open_sender(kUrl);
     } catch (const LcmUnavailable& error) {
       const std::string text = error.what();
       ::_exit(text.find("no route to the multicast group 239.255.76.68") == 0 ? kRight : kWrong);
