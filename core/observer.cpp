@@ -69,7 +69,7 @@ bool may_be_plain_centre(const Segment& segment) {
   const double ellipse_area = std::numbers::pi * inner.a * inner.b;
   const double area =
       segment.bright_share * std::numbers::pi * segment.ellipse.a * segment.ellipse.b;
-  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.2 * grid) return false;
+  if (std::abs(ellipse_area / area - 1) > 0.02 + 0.1 * grid) return false;
   const double tolerance = 0.06 + grid;
   return std::abs(inner.a / (ratio * segment.ellipse.a) - 1) < tolerance &&
          std::abs(inner.b / (ratio * segment.ellipse.b) - 1) < tolerance;
@@ -141,6 +141,13 @@ struct Observer::Candidate {
     if (pattern.kind == Pattern::Kind::kPlain &&
         (fitted->state.inner_ratio < kPlainInnerRatioMin - 0.04 ||
          fitted->state.inner_ratio > kPlainInnerRatioMax + 0.04)) {
+      return false;
+    }
+    // A disc that leaves more residuals than the outer rim is no disc: a square, say.
+    constexpr double kDiscError = 0.06;  // share of the contrast
+    const double error = kDiscError * contrast;
+    if (pattern.kind == Pattern::Kind::kPlain &&
+        fitted->inner_square > 2 * fitted->outer_square + error * error) {
       return false;
     }
     return fitted->mean_square < kMaxResidual * kMaxResidual * contrast * contrast;
