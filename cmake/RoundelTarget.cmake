@@ -50,7 +50,6 @@ function(roundel_test name)
   # and take half the time to build.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} doctest::doctest)
-  roundel_precompile(${name} <doctest/doctest.h>)
   doctest_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
 endfunction()
 
