@@ -36,7 +36,8 @@ __attribute__((target("avx2"))) void remove_avx2(const std::array<Cubic, 2>& len
 
 }  // namespace
 
-void remove_lens(const std::array<Cubic, 2>& lens, float* x, float* y, int count, VectorUnit unit) {
+void remove_lens(const std::array<Cubic, 2>& lens, float* x, float* y, int count,
+                 [[maybe_unused]] VectorUnit unit) {
 #if defined(__x86_64__)
   static const bool wide = widest_vectors() >= 256;
   if (unit != VectorUnit::kBaseline && wide) return remove_avx2(lens, x, y, count);
