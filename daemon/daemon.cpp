@@ -145,6 +145,7 @@ bool Daemon::carry_frame() {
   if (!looked_at && !recording_) lease->give_back();
   const std::span<const ArenaPose> arena = arena_.locate(markers);
   times.tracked_us = now().mono_us;
+  times.stages = parts_.tracker->stage_times();
   frame_carried_ = true;
   // A machine that slept, or a process that was stopped, in the midst of it: robots would take it
   // for news.
