@@ -49,7 +49,6 @@ class DaemonUnderTest {
   long anonymous_kb() const { return process_.memory_kb("RssAnon:"); }
 
  private:
-
   const Film& film_;
   TemporaryDirectory folder_;
   Subscriber subscriber_;
