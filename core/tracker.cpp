@@ -76,6 +76,7 @@ struct Tracker::Impl {
   std::optional<Observation> fit(const LumaView& frame, const Track& track,
                                  const Expectation& expected);
   std::optional<Observation> follow_closely(const LumaView& frame, const Track& track);
+  void search_for_lost(const LumaView& frame);
   bool follow(const LumaView& frame, const Track& track);
   Observation observe(const LumaView& frame, const Track& track);
   void search_nearby(const LumaView& frame, const Track& track);
@@ -94,6 +95,8 @@ struct Tracker::Impl {
   std::int64_t next_number = 1;
   std::int64_t frames = 0;
   int band = 0;  // the part of the image searched for newcomers in this frame
+  StageStopwatch::Clock clock = nullptr;
+  StageTimes stage_times;
 };
 
 // From the expected place inward: where the ring should be, a dark pixel starts the fill.
@@ -207,7 +210,10 @@ void Tracker::Impl::follow_tracks(const LumaView& frame) {
       track.update(observe(frame, track), observer.id_count());
     }
   }
-  // Only after every track that is where it should be has claimed its pixels.
+}
+
+// Only after every track that is where it should be has claimed its pixels.
+void Tracker::Impl::search_for_lost(const LumaView& frame) {
   for (Track& track : tracks) {
     if (track.seen) continue;
     ++track.missed;
@@ -325,16 +331,30 @@ std::span<const Marker> Tracker::track(const LumaView& frame) {
   ++self.frames;
   self.search.begin(frame);
   self.found.clear();
+  StageStopwatch stopwatch(self.clock);
   self.follow_tracks(frame);
+  self.stage_times.following_ns = stopwatch.lap_ns();
+  self.search_for_lost(frame);
   self.find_newcomers(frame);
+  self.stage_times.searching_ns = stopwatch.lap_ns();
   for (const Segment& segment : self.found) self.adopt(self.observer.observe(frame, segment));
   self.exchange_mistaken();
+  self.stage_times.identifying_ns = stopwatch.lap_ns();
   std::erase_if(self.tracks, [](const Track& track) {
     return track.missed > kMaxMissed || track.implausible > kMaxImplausible;
   });
   self.publish();
   self.observer.settle_curve();  // from the next frame on
   return self.markers;
+}
+
+void Tracker::time_stages(StageStopwatch::Clock clock) {
+  impl_->clock = clock;
+  impl_->stage_times = {};
+}
+
+const StageTimes& Tracker::stage_times() const {
+  return impl_->stage_times;
 }
 
 void Tracker::reset() {
