@@ -41,12 +41,14 @@ std::optional<ArenaCalibration> ArenaStore::load() const {
   return parse_arena_file(*text, path_);
 }
 
-// First the old one is copied away, then replaced: at every instant the file in use is whole.
+// Both files are on the disk before either takes its place: if it is full, nothing has changed. Of
+// the two the copy of the old one comes first, so that the file in use is whole at every instant.
 void ArenaStore::save(const ArenaCalibration& calibration) {
-  const std::string text = format_arena_file(calibration);
-  const std::optional<std::string> old = worth_keeping(path_);
-  if (old) write_file_atomically(previous_path(), *old);
-  write_file_atomically(path_, text);
+  StagedFile fresh(path_, format_arena_file(calibration));
+  if (const std::optional<std::string> old = worth_keeping(path_)) {
+    write_file_atomically(previous_path(), *old);
+  }
+  fresh.take_its_place();
 }
 
 ArenaCalibration ArenaStore::restore() {
@@ -56,17 +58,24 @@ ArenaCalibration ArenaStore::restore() {
         fmt::format("{}: there is no calibration before the one in use", previous_path()));
   }
   const ArenaCalibration calibration = parse_arena_file(*previous, previous_path());
-  const std::optional<std::string> current = worth_keeping(path_);
-  write_file_atomically(path_, *previous);
-  if (current) write_file_atomically(previous_path(), *current);
+  StagedFile restored(path_, *previous);
+  if (const std::optional<std::string> current = worth_keeping(path_)) {
+    write_file_atomically(previous_path(), *current);
+  }
+  restored.take_its_place();
   return calibration;
 }
 
+// A damaged one makes way without taking the place of the one before.
 void ArenaStore::forget() {
-  if (::rename(path_.c_str(), previous_path().c_str()) != 0 && errno != ENOENT) {
+  const bool keep = worth_keeping(path_) || !worth_keeping(previous_path());
+  const int failed =
+      keep ? ::rename(path_.c_str(), previous_path().c_str()) : ::unlink(path_.c_str());
+  if (failed != 0 && errno != ENOENT) {
     throw std::runtime_error(
         fmt::format("{}: can't be put aside: {}", path_, std::strerror(errno)));
   }
+  sync_folder_of(path_);
 }
 
 }  // namespace roundel

@@ -53,13 +53,24 @@ double variance_of(const PhotometricState& state, double mean_square) {
   return std::max(mean_square, kLeastVariance) + error * error;
 }
 
+// What a step leaves undone, in standard deviations of the result. A blurred edge looks alike on
+// both sides, so that a Gauss-Newton step by d is wrong only in the third order, by d^3 / 12 in
+// blurs; some edges move by more than the mean. `gain` is the square of the step in standard
+// deviations.
+double left_by(double gain, double moved_blurs) {
+  constexpr double kUneven = 3;
+  return std::sqrt(std::max(0.0, gain)) * kUneven * moved_blurs * moved_blurs / 12;
+}
+
 }  // namespace
 
 struct PhotometricFit::Step {
   Vector change = Vector::Zero();
   double mean_square = 0;        // of the residuals before it
   double mean_square_after = 0;  // to second order
-  double gain = 0;  // what it takes off the sum of squares, in units of the residuals' variance
+  double gain = 0;      // what it takes off the sum of squares, in units of the residuals' variance
+  double moved_px = 0;  // by which edges move and widen in the image, root of the mean square: the
+                        // shift of all of them that would take as much off
   bool last = false;
   PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes; when last
 };
@@ -173,7 +184,11 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   }
   if constexpr (kCount > kCodeUnknowns) {
     const bool plain = pattern.kind == Pattern::Kind::kPlain;
-    add(kInner, pattern.inner_ratio - state.inner_ratio, plain ? pattern.inner_sigma : kPinned);
+    if (plain) {
+      add(kInner, pattern.inner_ratio - state.inner_ratio, pattern.inner_sigma);
+    } else {
+      add(kInner, 0, kPinned);
+    }
   }
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
@@ -183,7 +198,10 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   const double taken_off = change.dot(2 * seen - right_side + known.cwiseProduct(change));
   step.mean_square_after = std::max(0.0, static_cast<double>(sums.squares) - taken_off) /
                            static_cast<double>(std::max(1.0F, sums.weights));
-  const bool settled = left_by(state, step.change, step.gain) < plan.settled;
+  const auto shift_squares = static_cast<double>(sums.normal_matrix[kShift * (kShift + 3) / 2]);
+  const double moved = std::max(0.0, step.gain) * variance / std::max(shift_squares, 1e-30);
+  step.moved_px = std::sqrt(moved) + std::abs(step.change[kBlur]) * state.blur_px;
+  const bool settled = left_by(step.gain, step.moved_px / state.blur_px) < plan.settled;
   step.last = (settled && taken >= std::max(plan.min_steps, plan.rough_steps + 1)) ||
               taken >= plan.max_steps;
   if (step.last) {
@@ -192,30 +210,6 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
     step.inverse = columns.template topRows<6>();
   }
   return step;
-}
-
-// What a step leaves undone, in standard deviations of the result. A blurred edge looks alike on
-// both sides, so that a Gauss-Newton step by d is wrong only in the third order, by d^3 / 12 in
-// blurs. `gain` is the square of the step in standard deviations.
-double PhotometricFit::left_by(const PhotometricState& state, const Vector& step,
-                               double gain) const {
-  const double blurs = moved_px(state, step) / state.blur_px;
-  return std::sqrt(std::max(0.0, gain)) * blurs * blurs / 12;
-}
-
-// By how much a step moves or blurs edges in the image, pixels, at most about.
-double PhotometricFit::moved_px(const PhotometricState& state, const Vector& step) const {
-  const Pose& pose = state.pose;
-  const double height = -pose.normal().dot(pose.position) / radius_m_;  // of the eye, in radii
-  const double slant = pose.position.norm() / (radius_m_ * std::max(height, 1e-3));
-  const double aside = std::sqrt(std::max(0.0, slant * slant - 1)) + 1 / std::max(height, 1e-3);
-  const double rise = std::abs(step[kMoveZ]) + step.segment<2>(kTurnX).norm();
-  const double in_plane = step.segment<2>(kMoveX).norm() + std::abs(step[kTurnZ]) + rise * aside;
-  const double pixels_a_radius =
-      radius_m_ /
-      (pose.position.z() * std::sqrt(std::abs(pixels_.pixel_slope().determinant()) + 1e-30));
-  return in_plane * pixels_a_radius + std::abs(step[kBlur]) * state.blur_px +
-         std::abs(step[kShift]);
 }
 
 PhotometricState PhotometricFit::advanced(const PhotometricState& state, const Vector& step) const {

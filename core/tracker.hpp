@@ -8,6 +8,7 @@
 #include "core/detector_parameters.hpp"
 #include "core/luma_view.hpp"
 #include "core/marker.hpp"
+#include "core/stage_times.hpp"
 
 namespace roundel {
 
@@ -27,6 +28,11 @@ class Tracker {
   // Markers seen in this frame, by track number. The span holds until the next call.
   // The camera's resolution must be that of the frame, otherwise std::invalid_argument.
   std::span<const Marker> track(const LumaView& frame);
+
+  // From now on the stages of every frame are timed by this clock; null: not at all.
+  void time_stages(StageStopwatch::Clock clock);
+  // Of the last frame; zero where they are not timed.
+  const StageTimes& stage_times() const;
 
   // Forgets all tracks (after a cut in the stream). Track numbers go on rising.
   void reset();

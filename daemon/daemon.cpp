@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "config/fields.hpp"
+#include "daemon/capture/frame_clock.hpp"
 #include "daemon/log.hpp"
 #include "daemon/setup.hpp"
 #include "daemon/start_up_summary.hpp"
@@ -144,6 +145,14 @@ bool Daemon::carry_frame() {
   if (!looked_at && !recording_) lease->give_back();
   const std::span<const ArenaPose> arena = arena_.locate(markers);
   times.tracked_us = now().mono_us;
+  times.stages = parts_.tracker->stage_times();
+  frame_carried_ = true;
+  // A machine that slept, or a process that was stopped, in the midst of it: robots would take it
+  // for news.
+  if (!information_.simulated && times.tracked_us - times.captured_us > FrameClock::kOldestUs) {
+    ++withheld_.stale;
+    return true;
+  }
 
   information_.frame = frame.number;
   information_.dropped = drops_of_session().total();
@@ -156,7 +165,6 @@ bool Daemon::carry_frame() {
   if (recording_) record(frame.luma, markers, arena);
   fill(control_.next_snapshot(), markers, arena, looked_at ? &frame.luma : nullptr);
   control_.offer_snapshot();
-  frame_carried_ = true;
   return true;
 }
 
@@ -331,11 +339,14 @@ void Daemon::start(Parts parts) {
 }
 
 DropCounts Daemon::drops_of_session() const {
-  return parts_.source->drops() - drops_before_session_;
+  DropCounts drops = parts_.source->drops();
+  drops += withheld_;
+  return drops - drops_before_session_;
 }
 
 void Daemon::begin_session() {
   information_.session = std::max(now().wall_us, information_.session + 1);
+  withheld_ = {};
   drops_before_session_ = parts_.source->drops();
   unsent_before_session_ = parts_.broadcast->unsent_frames();
   statistics_.begin_session();

@@ -80,6 +80,7 @@ class Daemon final : private LoopControl {
   FrameInformation information_;  // of the last frame; the states hold in between
   status_t status_{};             // reused, so that its texts are not copied every second
   DropCounts drops_before_session_;
+  DropCounts withheld_;  // tracked, but too old by then; of this session
   std::int64_t unsent_before_session_ = 0;
   bool told_of_other_resolution_ = false;
   bool summary_due_ = false;

@@ -10,6 +10,7 @@
 #include "daemon/capture/camera_source.hpp"
 #include "daemon/files_source.hpp"
 #include "daemon/simulator_source.hpp"
+#include "transport/clock.hpp"
 #include "transport/lcm_url.hpp"
 
 namespace roundel {
@@ -102,7 +103,9 @@ std::optional<CameraModel> make_camera(const LoadedConfiguration& configuration,
 Tracker make_tracker(const LoadedConfiguration& configuration,
                      const std::optional<CameraModel>& camera) {
   try {
-    return {configuration.values.detector, camera};
+    Tracker tracker(configuration.values.detector, camera);
+    tracker.time_stages(monotonic_ns);
+    return tracker;
   } catch (const std::invalid_argument& error) {
     throw configuration.error("detector", error.what());
   }

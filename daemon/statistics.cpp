@@ -21,6 +21,9 @@ void Statistics::add(const FrameTimes& times, std::size_t markers) {
   arrival_.add(times.arrived_us - times.captured_us);
   reading_.add(times.readable_us - times.arrived_us);
   tracking_.add(times.tracked_us - times.readable_us);
+  following_.add(times.stages.following_ns / 1000);
+  searching_.add(times.stages.searching_ns / 1000);
+  identifying_.add(times.stages.identifying_ns / 1000);
   publishing_.add(times.published_us - times.tracked_us);
   handling_.add(times.published_us - times.arrived_us);
   total_.add(times.published_us - times.captured_us);
@@ -42,6 +45,9 @@ void Statistics::report(TimeStamp current, status_t& status) {
   status.arrival = take(arrival_);
   status.reading = take(reading_);
   status.tracking = take(tracking_);
+  status.following = take(following_);
+  status.searching = take(searching_);
+  status.identifying = take(identifying_);
   status.publishing = take(publishing_);
   status.handling = take(handling_);
   status.total = take(total_);

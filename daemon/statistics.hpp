@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/stage_times.hpp"
 #include "daemon/latency_histogram.hpp"
 #include "transport/clock.hpp"
 #include "transport/messages.hpp"
@@ -15,6 +16,7 @@ struct FrameTimes {
   std::int64_t readable_us = 0;  // decoded, where that is needed
   std::int64_t tracked_us = 0;
   std::int64_t published_us = 0;
+  StageTimes stages;  // of the tracking
 };
 
 // What the status message tells about the frames since the one before. No allocation.
@@ -37,7 +39,8 @@ class Statistics {
   std::int64_t frames_ = 0;
   std::int64_t frames_since_report_ = 0;
   std::size_t markers_ = 0;
-  LatencyHistogram arrival_, reading_, tracking_, publishing_, handling_, total_;
+  LatencyHistogram arrival_, reading_, tracking_, following_, searching_, identifying_, publishing_,
+      handling_, total_;
 };
 
 // What the kernel says about the wall clock.

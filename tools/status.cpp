@@ -65,17 +65,20 @@ std::string latency_text(const Json& latency) {
   static constexpr std::array kStages = {Stage{"arrival", "from capture to roundeld"},
                                          Stage{"reading", "decoding, where it is needed"},
                                          Stage{"tracking", "to the markers"},
+                                         Stage{"following", "of that: known markers"},
+                                         Stage{"searching", "of that: lost ones, newcomers"},
+                                         Stage{"identifying", "of that: what was found so"},
                                          Stage{"publishing", "to the last message"},
                                          Stage{"handling", "from roundeld to the last message"},
                                          Stage{"total", "from capture to the last message"}};
   if (number_field(field(latency, "total"), "max") == 0) {
     return "latency      no frame in the last second\n";
   }
-  std::string text = fmt::format("latency, ms  {:<10} {:>7} {:>7} {:>7} {:>7}\n", "", "50 %",
+  std::string text = fmt::format("latency, ms  {:<11} {:>7} {:>7} {:>7} {:>7}\n", "", "50 %",
                                  "90 %", "99 %", "max");
   for (const Stage& stage : kStages) {
     const Json& percentiles = field(latency, stage.name);
-    text += fmt::format("             {:<10}", stage.name);
+    text += fmt::format("             {:<11}", stage.name);
     for (const char* key : {"p50", "p90", "p99", "max"}) {
       text += fmt::format(" {:>7.2f}", number_field(percentiles, key) / 1000);
     }

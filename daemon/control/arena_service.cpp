@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "calibration/arena_file.hpp"
+#include "daemon/control/ask_loop.hpp"
 #include "daemon/log.hpp"
 #include "transport/clock.hpp"
 
@@ -26,8 +27,10 @@ std::string utc_date() {
 
 }  // namespace
 
-void ArenaService::require_context() const {
-  if (!context_) throw std::runtime_error(kNoFrame);
+// The one in use, whether there are frames or not.
+ArenaStore ArenaService::store() {
+  return ArenaStore(
+      ask_loop(loop_, [](LoopControl& loop) { return loop.configuration().arena.file; }));
 }
 
 void ArenaService::start(const ArenaRequest& request) {
@@ -74,18 +77,18 @@ void ArenaService::cancel() {
 }
 
 ArenaCalibration ArenaService::restore() {
+  ArenaStore kept = store();
   const std::lock_guard lock(mutex_);
-  require_context();
-  ArenaCalibration calibration = ArenaStore(context_->arena_file).restore();
+  ArenaCalibration calibration = kept.restore();
   log_info("arena: the calibration of {} is in use again", calibration.date);
   use(calibration);
   return calibration;
 }
 
 void ArenaService::forget() {
+  ArenaStore kept = store();
   const std::lock_guard lock(mutex_);
-  require_context();
-  ArenaStore(context_->arena_file).forget();
+  kept.forget();
   log_info("arena: the calibration has been put aside");
   loop_.post([](LoopControl& loop) { loop.set_arena(nullptr); });
 }

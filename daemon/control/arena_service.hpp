@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calibration/arena_calibrator.hpp"
+#include "calibration/arena_file.hpp"
 #include "calibration/arena_watch.hpp"
 #include "daemon/control/frame_snapshot.hpp"
 #include "daemon/control/loop_commands.hpp"
@@ -47,7 +48,7 @@ class ArenaService {
   void on_tick(std::int64_t now_us);
 
  private:
-  void require_context() const;
+  ArenaStore store();
   void show_running(const char* text, std::int64_t now_us);
   void begin(const ArenaRequest& request, std::int64_t now_us);
   void begin_waiting();

@@ -35,6 +35,7 @@ fi
 wanted="$* $(sha256sum <"$0")"
 if [[ -f $directory/.made && $(<"$directory/.made") == "$wanted" ]]; then exit; fi
 rm -rf "$directory"
+mkdir -p "$(dirname "$directory")"  # in a fresh clone there is none
 self=$(readlink -f "$0")
 mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$(IFS=, && echo "$*")" \
   --extract-hook="$self --fill-database \"\$1\"" bookworm "$directory"

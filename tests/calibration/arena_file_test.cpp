@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/user.h>
 #include <sys/wait.h>
@@ -9,6 +10,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <iterator>
 
 #include "tests/calibration/arena_scene.hpp"
 #include "tests/error_of.hpp"
@@ -87,6 +89,26 @@ bool killed_at_call(int calls, Task&& task, std::vector<long>* made = nullptr) {
 }
 
 constexpr int kEndless = 1'000'000;
+
+// Files can't grow beyond a size, as if the disk were full.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::size_t bytes) {
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before_) == 0);
+    const rlimit limit = {bytes, before_.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+};
 
 }  // namespace
 
@@ -187,6 +209,45 @@ TEST_CASE("a damaged calibration is replaced, and does not push out the one befo
   }
 }
 
+TEST_CASE("a damaged calibration that is put aside does not push out the one before it") {
+  const TemporaryDirectory folder;
+  ArenaStore store(folder.file("arena.yaml"));
+  store.save(sample("one"));
+  store.save(sample("two"));
+  folder.write("arena.yaml", "width: [");
+  store.forget();
+  CHECK_FALSE(store.load().has_value());
+  CHECK(store.restore().date == "one");
+}
+
+TEST_CASE("on a full disk the calibration in use and the one before stay what they are") {
+  const TemporaryDirectory folder;
+  ArenaStore store(folder.file("arena.yaml"));
+  store.save(sample("first"));
+  store.save(sample("second"));
+  const auto check_both = [&](const std::string& current, const std::string& before) {
+    CHECK(store.load()->date == current);
+    CHECK(read_arena_file(store.previous_path()).date == before);
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.file("")), {}) == 2);
+  };
+  {
+    // Room for a file as large as the old one, none for the new one.
+    const FileSizeLimit limit(format_arena_file(sample("second")).size() + 1);
+    CHECK(error_of([&] { store.save(sample("third, much longer")); }).find("can't be written") !=
+          std::string::npos);
+    check_both("second", "first");
+  }
+  store.save(sample("third, much longer"));
+  {
+    // The other way round: room for the one that is restored, none for the one that makes way.
+    const FileSizeLimit limit(format_arena_file(sample("second")).size() + 1);
+    CHECK_FALSE(error_of([&] { store.restore(); }).empty());
+    check_both("third, much longer", "second");
+  }
+  CHECK(store.restore().date == "second");
+  check_both("second", "third, much longer");
+}
+
 TEST_CASE("killed at any system call of saving, the store has a whole calibration") {
   const ArenaCalibration first = sample("first"), second = sample("second"),
                          third = sample("third");
@@ -207,9 +268,10 @@ TEST_CASE("killed at any system call of saving, the store has a whole calibratio
     const std::string before = read_arena_file(store.previous_path()).date;
     CHECK((before == "first" || before == "second"));
     if (current->date == "third") CHECK(before == "second");
-    // What was left behind does not keep the next one from being saved.
+    // What was left behind does not keep the next one from being saved, and goes away with it.
     store.save(third);
     CHECK(store.load()->date == "third");
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.file("")), {}) == 2);
     if (!killed) break;
     REQUIRE(kills < kEndless);
   }

@@ -191,3 +191,19 @@ TEST_CASE("after a reset tracks begin anew under new numbers") {
   REQUIRE(markers.size() == 1);
   CHECK(markers[0].track == 2);
 }
+
+TEST_CASE("the stages of a frame are timed by the clock that is given, and by none otherwise") {
+  static std::int64_t now_ns;
+  now_ns = 5;
+  Film film(640, 480);
+  film.show({{7, 0, 0, 0}});
+  CHECK(film.tracker.stage_times().following_ns == 0);
+  film.tracker.time_stages([] { return now_ns *= 2; });
+  film.show({{7, 0, 0, 0}});
+  CHECK(film.tracker.stage_times().following_ns == 10);
+  CHECK(film.tracker.stage_times().searching_ns == 20);
+  CHECK(film.tracker.stage_times().identifying_ns == 40);
+  film.tracker.time_stages(nullptr);
+  film.show({{7, 0, 0, 0}});
+  CHECK(film.tracker.stage_times().identifying_ns == 0);
+}

@@ -71,7 +71,11 @@ class ControlRig final : public LoopControl {
     context_ = std::make_shared<const TrackingContext>(context);
   }
   void set_arena_moved(bool is) override { moved = is; }
-  Configuration configuration() override { return {}; }
+  Configuration configuration() override {
+    Configuration values;
+    values.arena.file = file();
+    return values;
+  }
   void start_recording(std::shared_ptr<RecordingQueue>, bool) override {}
 
   void run() {

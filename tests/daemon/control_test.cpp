@@ -101,6 +101,23 @@ TEST_CASE("a calibration that is asked for before the first frame waits for it")
   CHECK(wait_for_calibration(rig)["run"]["state"] == "done");
 }
 
+TEST_CASE("a calibration is restored and put aside before the first frame, too") {
+  ControlRig rig(false);
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/restore"), "no calibration before"));
+  rig.show_frames();
+  const std::string request = R"({"width": 3, "height": 2})";
+  CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena", request), "202"));
+  REQUIRE(wait_for_calibration(rig)["run"]["state"] == "done");
+  const ArenaCalibration calibration = *ArenaStore(rig.file()).load();
+
+  const ControlRig late(false);
+  ArenaStore(late.file()).save(calibration);
+  CHECK(has(ask(late.socket(), "DELETE", "/v1/calibration/arena"), "200 OK"));
+  CHECK_FALSE(ArenaStore(late.file()).load().has_value());
+  CHECK(has(ask(late.socket(), "POST", "/v1/calibration/restore"), calibration.date));
+  CHECK(ArenaStore(late.file()).load().has_value());
+}
+
 TEST_CASE("a calibration without any frame ends with its time limit, and says so") {
   const ControlRig rig(false);
   CHECK(has(ask(rig.socket(), "POST", "/v1/calibration/arena",

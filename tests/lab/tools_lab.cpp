@@ -79,6 +79,7 @@ TEST_CASE("status and controls of a running roundeld, also while its camera is a
   const nlohmann::json status = nlohmann::json::parse(ask({"status", "--json"}).output);
   CHECK(status.at("camera").at("state") == "streaming");
   CHECK(status.at("latency_us").at("handling").at("p99") > 0);
+  CHECK(status.at("latency_us").at("following").at("p50") > 0);
   CHECK(status.at("drops").at("damaged") == 0);
   CHECK(status.at("stamp_source") == "start_of_frame");
 
