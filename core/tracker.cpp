@@ -18,6 +18,9 @@ constexpr int kNewcomerFrames = 5;   // a full search is spread over as many fra
 // How often a settled track is read and weighed anew, and how often the slope of the light and the
 // blur by motion, which change slowly, are fitted along; frames.
 constexpr int kReadingInterval = 64, kLightInterval = 8;
+// Where the evidence leaves the pose undecided, it is weighed in every frame at first, then every
+// few.
+constexpr int kFirstWeighings = 16, kWeighingInterval = 4;
 // What moves as it moved before is followed without a look at its outline; pixels.
 constexpr double kMaxSurprise = 0.6;
 // And so close to the expected place the first step of the fit is mostly the last one.
@@ -150,8 +153,13 @@ void Tracker::Impl::search_nearby(const LumaView& frame, const Track& track) {
 
 // Whether a track only has to be fitted, not read and weighed anew; which it is from time to time.
 bool Tracker::Impl::only_fitted(const Track& track) const {
-  const bool its_turn = (frames + track.number) % kReadingInterval == 0;
-  return !its_turn && track.settled(observer.id_count());
+  if (!track.is_sure_of_name(observer.id_count())) return false;
+  int interval = kReadingInterval;
+  if (!track.is_sure_of_pose()) {
+    if (track.weighings < kFirstWeighings) return false;
+    interval = kWeighingInterval;
+  }
+  return (frames + track.number) % interval != 0;
 }
 
 bool Tracker::Impl::in_new_light(const Track& track) const {
