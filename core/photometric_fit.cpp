@@ -108,16 +108,16 @@ PhotometricModel PhotometricFit::model_of(const PhotometricState& state, const P
   PhotometricModel m{};
   // Everything is scaled by the depth at the middle, which keeps single precision exact enough.
   const double scale = 1 / at.z();
+  const Eigen::Matrix<double, 3, 2> by_pixel = to_plane.leftCols<2>() * pixels_.pixel_slope();
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
+    m.by_u[k] = static_cast<float>(by_pixel(i, 0) * scale);
+    m.by_v[k] = static_cast<float>(by_pixel(i, 1) * scale);
     m.at[k] = static_cast<float>(at[i] * scale);
     m.by_x[k] = static_cast<float>(to_plane(i, 0) * scale);
     m.by_y[k] = static_cast<float>(to_plane(i, 1) * scale);
     m.eye[k] = static_cast<float>(eye[i]);
   }
-  const Eigen::Matrix2d& slope = pixels_.pixel_slope();
-  m.pixel_slope = {static_cast<float>(slope(0, 0)), static_cast<float>(slope(0, 1)),
-                   static_cast<float>(slope(1, 0)), static_cast<float>(slope(1, 1))};
   m.dark = static_cast<float>(state.dark);
   m.contrast = static_cast<float>(state.contrast);
   m.slope_x = static_cast<float>(state.slope_x);
