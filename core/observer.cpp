@@ -135,7 +135,8 @@ struct Observer::Candidate {
   Pattern pattern;
   PoseHypothesis hypothesis;
   std::optional<PhotometricPose> fitted;
-  bool far_behind = false;  // after the rough fit; `fitted` is what that one found
+  double behind = 0;        // in its log-likelihood, after the rough fit
+  bool far_behind = false;  // so far that it was left there: `fitted` is what the rough fit found
 
   // Whether the fit, as far as there is one, found what a marker looks like.
   bool explained(double contrast) const {
@@ -261,9 +262,9 @@ void Observer::fit_roughly(const Segment& segment, std::array<Candidate, 2>& can
   const double floor = kModelError * segment.levels.contrast();
   const double better = std::min(first->mean_square, second->mean_square) + floor * floor;
   for (Candidate& candidate : candidates) {
-    const double behind = 0.5 * (candidate.fitted->mean_square + floor * floor - better) *
-                          candidate.fitted->pixels / (plan.rough_every * better);
-    candidate.far_behind = behind > (same ? 0 : kFarBehind);
+    candidate.behind = 0.5 * (candidate.fitted->mean_square + floor * floor - better) *
+                       candidate.fitted->pixels / (plan.rough_every * better);
+    candidate.far_behind = candidate.behind > (same ? 0 : kFarBehind);
   }
 }
 
@@ -313,6 +314,13 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   for (Candidate& candidate : candidates) {
     candidate.hypothesis.log_likelihood =
         -0.5 * candidate.fitted->mean_square * candidate.fitted->pixels / variance;
+  }
+  // What was left behind was fitted to fewer pixels, whose residuals may happen to be smaller: only
+  // what the rough fit made of both compares them.
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!candidates[i].far_behind) continue;
+    candidates[i].hypothesis.log_likelihood =
+        candidates[1 - i].hypothesis.log_likelihood - candidates[i].behind;
   }
 }
 

@@ -280,8 +280,13 @@ ROUNDEL_INLINE Expected<V> code_ring(const PhotometricModel& m, const PlanePoint
       (rim.pixels * border.pixels) * ((m.blur * rim.per_pixel) * (m.blur * border.per_pixel)) *
       (teeth.by_arc * (centre.slope * ring.value - ring.slope * (1 - centre.value)));
   const V askew = (across + m.stretch_u * mixed_u + m.stretch_d * mixed_d) * by_correlation;
+  // A rim's curvature is seen together with the teeth: the rim recedes by the square of what the
+  // blur spreads along it, which a pixel aside of a border sees more of; and a border some way
+  // along the rim is not square to it, which counts twice as much the other way.
+  const V bent = teeth.by_blur * (ring.slope * outer.recession * (1 - centre.value) -
+                                  centre.slope * inner.recession * ring.value);
   Expected<V> x{};
-  x.bright = centre.value + tooth_part * teeth.value + askew;
+  x.bright = centre.value + tooth_part * teeth.value + askew + bent;
   const V by_pixel = -(centre.slope * centre_part + ring.slope * ring_part) * rim.per_pixel;
   const V receding =
       2 * (centre.slope * inner.recession * centre_part + ring.slope * outer.recession * ring_part);
