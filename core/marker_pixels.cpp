@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/ellipse_rows.hpp"
 #include "core/marker_geometry.hpp"
 
 namespace roundel {
@@ -13,34 +14,6 @@ namespace {
 constexpr double kInnerLimit = 0.8;  // pixels inside see the inner edges, outside the outer rim
 constexpr double kMaxOutside = 0.2;  // of the radius: inside the white margin
 constexpr int kMaxPixels = 6000;     // larger markers are thinned out
-
-// Concentric shares of an ellipse, cut by image rows.
-class EllipseRows {
- public:
-  explicit EllipseRows(const Ellipse& e) : u_(e.u) {
-    const double c = std::cos(e.angle), s = std::sin(e.angle);
-    const double aa = 1 / (e.a * e.a), bb = 1 / (e.b * e.b);
-    square_ = c * c * aa + s * s * bb;
-    mixed_ = c * s * (aa - bb);
-    constant_ = s * s * aa + c * c * bb;
-  }
-
-  struct Span {
-    double u0, u1;  // empty when u1 < u0
-  };
-
-  // What the row `dv` below the centre has inside the ellipse shrunk to `share`.
-  Span inside(double dv, double share) const {
-    const double b = mixed_ * dv;
-    const double root = b * b - square_ * (constant_ * dv * dv - share * share);
-    if (share <= 0 || root < 0) return {u_, u_ - 1};
-    const double half = std::sqrt(root) / square_, middle = u_ - b / square_;
-    return {middle - half, middle + half};
-  }
-
- private:
-  double u_, square_ = 0, mixed_ = 0, constant_ = 0;
-};
 
 }  // namespace
 

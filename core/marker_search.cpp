@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/ellipse_rows.hpp"
+
 namespace roundel {
 
 namespace {
@@ -112,6 +114,19 @@ void MarkerSearch::claim(const Run& run, Owner owner) {
 
 void MarkerSearch::claim_segment() {
   for (const Run& span : finder_.row_spans()) claim(span, Owner::kMarker);
+}
+
+void MarkerSearch::claim(const Ellipse& outline, int frame_height) {
+  const EllipseRows rows(outline);
+  const double reach = rows.half_height();
+  const int first = std::max(0, static_cast<int>(std::ceil(outline.v - reach)));
+  const int last = std::min(frame_height - 1, static_cast<int>(std::floor(outline.v + reach)));
+  for (int v = first; v <= last; ++v) {
+    const EllipseRows::Span span = rows.inside(v - outline.v, 1);
+    if (span.u1 < span.u0) continue;
+    claim({v, static_cast<int>(std::floor(span.u0)), static_cast<int>(std::ceil(span.u1))},
+          Owner::kMarker);
+  }
 }
 
 Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold,

@@ -26,6 +26,9 @@ class MarkerSearch {
                   const RegionFiller::Limits& limits);
   const Segment& segment() const { return finder_.segment(); }
 
+  // Claims the area of a marker that is known to be there.
+  void claim(const Ellipse& outline, int frame_height);
+
   // Whether a pixel lies in a marker found in this frame.
   bool is_claimed(int u, int v) const { return is_owned(u, v, Owner::kMarker); }
 

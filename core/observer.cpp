@@ -35,6 +35,8 @@ constexpr double kDecided = 1000;
 // it; a hypothesis that it leaves behind by so much in its log-likelihood is not refined further.
 constexpr int kRoughEvery = 4, kRoughPixels = 300;
 constexpr double kFarBehind = 40;
+// Standard deviations that its last step may leave undone.
+constexpr double kRoughlySettled = 0.5;
 constexpr double kSame = 0.02;  // of the normals, radians
 
 // Residuals that a roughly fitted start adds, share of the contrast.
@@ -133,7 +135,8 @@ struct Observer::Candidate {
   Pattern pattern;
   PoseHypothesis hypothesis;
   std::optional<PhotometricPose> fitted;
-  bool far_behind = false;  // after the rough fit; `fitted` is what that one found
+  double behind = 0;        // in its log-likelihood, after the rough fit
+  bool far_behind = false;  // so far that it was left there: `fitted` is what the rough fit found
 
   // Whether the fit, as far as there is one, found what a marker looks like.
   bool explained(double contrast) const {
@@ -238,7 +241,9 @@ void Observer::fit_roughly(const Segment& segment, std::array<Candidate, 2>& can
   FitPlan plan;
   plan.unknowns = kFollowedUnknowns;
   plan.rough_every = std::clamp(fit_.loaded_pixels() / kRoughPixels, 1, kRoughEvery);
-  plan.rough_steps = plan.min_steps = plan.max_steps = 3;
+  plan.rough_steps = plan.max_steps = 3;
+  plan.min_steps = 1;
+  plan.settled = kRoughlySettled;
   plan.deviation = kFirstDeviation * segment.levels.contrast();
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
@@ -257,9 +262,9 @@ void Observer::fit_roughly(const Segment& segment, std::array<Candidate, 2>& can
   const double floor = kModelError * segment.levels.contrast();
   const double better = std::min(first->mean_square, second->mean_square) + floor * floor;
   for (Candidate& candidate : candidates) {
-    const double behind = 0.5 * (candidate.fitted->mean_square + floor * floor - better) *
-                          candidate.fitted->pixels / (plan.rough_every * better);
-    candidate.far_behind = behind > (same ? 0 : kFarBehind);
+    candidate.behind = 0.5 * (candidate.fitted->mean_square + floor * floor - better) *
+                       candidate.fitted->pixels / (plan.rough_every * better);
+    candidate.far_behind = candidate.behind > (same ? 0 : kFarBehind);
   }
 }
 
@@ -272,6 +277,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   if (loaded) fit_roughly(segment, candidates);
   FitPlan plan;
   plan.rough_steps = 0;
+  plan.min_steps = 1;
   plan.max_steps = 5;
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
@@ -308,6 +314,13 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   for (Candidate& candidate : candidates) {
     candidate.hypothesis.log_likelihood =
         -0.5 * candidate.fitted->mean_square * candidate.fitted->pixels / variance;
+  }
+  // What was left behind was fitted to fewer pixels, whose residuals may happen to be smaller: only
+  // what the rough fit made of both compares them.
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!candidates[i].far_behind) continue;
+    candidates[i].hypothesis.log_likelihood =
+        candidates[1 - i].hypothesis.log_likelihood - candidates[i].behind;
   }
 }
 

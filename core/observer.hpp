@@ -32,8 +32,19 @@ struct Observation {
   bool coded = false;         // a code ring was seen, whether or not its id is in the set
   bool plausible = false;  // what lies inside is a code, a plain marker's disc or too small to tell
   bool followed = false;   // fitted from what the track knew: no new reading, no weighing
+  bool lit_anew = true;    // the slope of the light was fitted
+  double surprise_px = 0;  // of a followed one: how far from the expected place it was
   int pose_count = 0;      // 0 without a camera model, else 2
   std::array<PoseHypothesis, 2> poses;  // the likelier one first
+};
+
+// Where the marker of a track is expected, and how bright.
+struct Expectation {
+  Pose pose;
+  Ellipse ellipse;  // its outline: as seen, or that of the pose
+  Levels levels;
+  bool close = false;         // so close that the fit's first step may be its last
+  bool in_new_light = false;  // light and motion blur are fitted along
 };
 
 // Turns segments into observations: two poses from the outline, the code or the bright centre read
@@ -49,11 +60,16 @@ class Observer {
   Observation observe(const LumaView& frame, const Segment& segment);
 
   // The marker of a track that is sure of its id and its pose: a single fit from where the last
-  // observation leads to expect it, with nothing read or weighed anew. `turn`: by which it turned
-  // since, rotation vector in camera axes. Nothing when the picture does not bear it out.
-  std::optional<Observation> follow(const LumaView& frame, const Segment& segment,
-                                    const PoseHypothesis& last, const Ellipse& last_ellipse,
-                                    const Eigen::Vector3d& turn);
+  // observation leads to expect it, with nothing read or weighed anew. Nothing when the picture
+  // does not bear it out.
+  std::optional<Observation> follow(const LumaView& frame, const PoseHypothesis& last,
+                                    const Expectation& expected);
+
+  // Moves a pose aside by as much as its outline moved. False where the lens model ends.
+  bool move(Pose& pose, const Ellipse& from, const Ellipse& to) const;
+
+  // A pose's image; nothing where it has none.
+  std::optional<Ellipse> outline(const Pose& pose) const;
 
   // Takes the response curve for what the markers observed so far tell, if that has changed.
   bool settle_curve();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/observer.hpp"
+#include "core/outline.hpp"
 
 namespace roundel {
 
@@ -12,6 +13,10 @@ namespace {
 // off.
 constexpr double kReachBlurs = 2.5, kReachSlack = 0.5;  // pixels
 constexpr double kMaxReach = 4.0;
+
+// Standard deviations that the last step of a followed marker may leave undone: at that the error
+// grows by two percent, mostly by much less.
+constexpr double kSettled = 0.2;
 
 // Beyond that the light has changed, share of the contrast.
 constexpr double kSameLight = 0.1;
@@ -35,27 +40,35 @@ Pose mirrored(const Pose& pose) {
 
 }  // namespace
 
-std::optional<Observation> Observer::follow(const LumaView& frame, const Segment& segment,
-                                            const PoseHypothesis& last, const Ellipse& last_ellipse,
-                                            const Eigen::Vector3d& turn) {
-  const Ellipse& here = segment.ellipse;
-  const auto before = camera_->normalise({last_ellipse.u, last_ellipse.v});
-  const auto now = camera_->normalise({here.u, here.v});
-  if (!before || !now) return std::nullopt;
+std::optional<Ellipse> Observer::outline(const Pose& pose) const {
+  return camera_ ? outline_of(pose, parameters_.diameter_m / 2, *camera_) : std::nullopt;
+}
+
+bool Observer::move(Pose& pose, const Ellipse& from, const Ellipse& to) const {
+  const auto before = camera_->normalise({from.u, from.v});
+  const auto now = camera_->normalise({to.u, to.v});
+  if (!before || !now) return false;
+  pose.position.head<2>() += pose.position.z() * (*now - *before);
+  return true;
+}
+
+std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHypothesis& last,
+                                            const Expectation& expected) {
   PhotometricState start = *last.state;
-  start.pose.position.head<2>() += start.pose.position.z() * (*now - *before);
-  if (const double angle = turn.norm(); angle > 0) {
-    start.pose.orientation =
-        Eigen::AngleAxisd(angle, turn / angle) * Eigen::Quaterniond(start.pose.orientation);
-  }
+  start.pose = expected.pose;
+  // The light's slope stays where it is while the marker turns beneath it.
+  const Eigen::Vector3d slope =
+      expected.pose.orientation.conjugate() *
+      (last.pose.orientation * Eigen::Vector3d(start.slope_x, start.slope_y, 0));
+  start.slope_x = slope.x();
+  start.slope_y = slope.y();
   const double reach = std::min(kMaxReach, kReachBlurs * start.blur_px + kReachSlack);
   InnerEdges inner;
   if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
-  if (!fit_.load(frame, *camera_, here, parameters_.diameter_m / 2, reach, inner)) {
-    return std::nullopt;
-  }
+  const double radius_m = parameters_.diameter_m / 2;
+  if (!fit_.load(frame, *camera_, expected.ellipse, radius_m, reach, inner)) return std::nullopt;
   PhotometricState lit = start;
-  fit_.set_levels(segment.levels, lit);
+  fit_.set_levels(expected.levels, lit);
   if (std::abs(lit.contrast - start.contrast) + std::abs(lit.dark - start.dark) >
       kSameLight * start.contrast) {
     start = lit;
@@ -66,21 +79,27 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const Segment
   FitPlan plan;
   // Motion blur changes with every turn and has to be fitted along.
   const bool in_motion = std::hypot(start.stretch_u, start.stretch_d) > kMotionStretch;
-  plan.unknowns = in_motion ? kCodeUnknowns : kFollowedUnknowns;
-  // So close to where it is expected, some of the pixels are enough for the first step.
-  plan.rough_every = 4;
+  const bool all = in_motion || expected.in_new_light;
+  plan.unknowns = all ? kCodeUnknowns : kFollowedUnknowns;
+  plan.min_steps = 1;
   plan.max_steps = 4;
-  plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * segment.levels.contrast();
+  // Where little is left to move, some of the pixels are enough for the first step.
+  plan.rough_steps = expected.close ? 0 : 1;
+  plan.rough_every = 4;
+  plan.settled = kSettled;
+  plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * expected.levels.contrast();
   const auto fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);
   if (!fitted || fitted->trust < kMinTrust) return std::nullopt;
-  const double floor = kModelError * segment.levels.contrast();
+  const double floor = kModelError * expected.levels.contrast();
   if (fitted->mean_square > kMaxGrowth * (last.mean_square + floor * floor)) return std::nullopt;
 
   Observation observation;
-  observation.segment = segment;
+  observation.segment.ellipse = expected.ellipse;
+  observation.segment.levels = expected.levels;
   observation.coded = last.pattern.kind == Pattern::Kind::kCode;
   observation.plausible = true;
   observation.followed = true;
+  observation.lit_anew = all;
   observation.pose_count = 2;
   PoseHypothesis& found = observation.poses[0];
   found.pose = fitted->state.pose;

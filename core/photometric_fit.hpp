@@ -112,8 +112,6 @@ class PhotometricFit {
   template <int kCount>
   Step solve(const PhotometricState& state, const Pattern& pattern, const EdgeLook& look,
              const PhotometricSums& sums, const FitPlan& plan, int taken) const;
-  double left_by(const PhotometricState& state, const Vector& step, double gain) const;
-  double moved_px(const PhotometricState& state, const Vector& step) const;
   PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
                             double deviation) const;
   PhotometricState advanced(const PhotometricState& state, const Vector& step) const;

@@ -12,7 +12,10 @@ namespace {
 constexpr double kSameNormal = 0.03;
 // Evidence for a pose fades, because tilting changes both hypotheses; and it has an end.
 constexpr double kFading = 0.9, kMaxPoseLogOdds = 20;
-constexpr double kVelocityGain = 0.5;
+// Readings of the light's slope that one more is averaged with, and what is more than noise of it.
+constexpr int kLightReadings = 4;
+constexpr double kOtherLight = 0.02;  // share a radius
+constexpr double kVelocityGain = 0.5, kChangeGain = 0.3;
 // What makes a track sure of its pose and of its id.
 constexpr double kSurePose = 10, kSureName = 0.9999;
 // Faster than that a robot does not turn, radians a frame; a flip of the pose does.
@@ -30,6 +33,16 @@ Ellipse Track::predicted() const {
   expected.u += velocity.x() * frames_since_seen();
   expected.v += velocity.y() * frames_since_seen();
   return expected;
+}
+
+Pose Track::predicted_pose() const {
+  Pose pose = observation.poses[static_cast<std::size_t>(pose_index)].pose;
+  pose.position += step + change;
+  if (const double angle = turn.norm(); angle > 0) {
+    pose.orientation =
+        Eigen::AngleAxisd(angle, turn / angle) * Eigen::Quaterniond(pose.orientation);
+  }
+  return pose;
 }
 
 bool Track::settled(int id_count) const {
@@ -66,9 +79,39 @@ void Track::update(const Observation& seen_now, int id_count) {
   evidence.add(seen_now.id, seen_now.id_probability, id_count);
   if (seen_now.pose_count == 0) return;
   weigh_poses(seen_now);
+  smooth_light(seen_now);
   const Pose& pose = seen_now.poses[static_cast<std::size_t>(pose_index)].pose;
+  surprise_px = seen_now.followed ? seen_now.surprise_px : surprise_px;
+  if (pose_before) {
+    const Eigen::Vector3d stepped = pose.position - pose_before->position;
+    change += kChangeGain * (stepped - step - change);
+    step = stepped;
+  } else {
+    change.setZero();
+    step.setZero();
+  }
   turn = pose_before ? turn_between(*pose_before, pose) : Eigen::Vector3d::Zero();
-  if (turn.norm() > kMaxTurn) turn.setZero();
+  if (turn.norm() > kMaxTurn) {
+    turn.setZero();
+    change.setZero();
+  }
+}
+
+// How the light slopes is read only now and then and holds until the next time: a mean of several
+// readings errs less than one does.
+void Track::smooth_light(const Observation& seen_now) {
+  auto& state = observation.poses[static_cast<std::size_t>(pose_index)].state;
+  if (!state) return;
+  const Eigen::Quaterniond& axes = state->pose.orientation;
+  const Eigen::Vector3d read = axes * Eigen::Vector3d(state->slope_x, state->slope_y, 0);
+  if (seen_now.lit_anew) {
+    if ((read - light_slope).norm() > kOtherLight) light_readings = 0;
+    if (light_readings < kLightReadings) ++light_readings;
+    light_slope += (read - light_slope) / light_readings;
+  }
+  const Eigen::Vector3d slope = axes.conjugate() * light_slope;
+  state->slope_x = slope.x();
+  state->slope_y = slope.y();
 }
 
 // Which of an observation's poses continues the track, by the evidence of this and earlier frames.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 
 #include "core/id_evidence.hpp"
 #include "core/observer.hpp"
@@ -21,7 +22,11 @@ struct Track {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of the pose published last; zero before
   double pose_log_odds = 0;  // for the branch that `normal` belongs to, over the other one
   bool poses_agree = false;  // both branches were the same when they were last compared
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // a frame, rotation vector in camera axes
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();    // a frame, rotation vector in camera axes
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();    // a frame, metres in camera axes
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();  // of the step, a frame: robots drive in curves
+  // How far from where the motion of earlier frames led it was when it was last followed, pixels.
+  double surprise_px = std::numeric_limits<double>::infinity();
 
   Observation observation;  // of this frame, when `seen`
   bool seen = false;
@@ -29,6 +34,8 @@ struct Track {
 
   // Where the ellipse is expected in the current frame, before it has been seen there.
   Ellipse predicted() const;
+  // The pose expected in the current frame, for a track that was seen in the last one.
+  Pose predicted_pose() const;
   int frames_since_seen() const { return missed > 1 ? missed : 1; }
 
   // Whether id and pose are beyond doubt, so that nothing needs to be read and weighed anew.
@@ -40,6 +47,10 @@ struct Track {
 
  private:
   void weigh_poses(const Observation& seen_now);
+  void smooth_light(const Observation& seen_now);
+
+  Eigen::Vector3d light_slope = Eigen::Vector3d::Zero();  // share a radius, camera axes
+  int light_readings = 0;
 };
 
 }  // namespace roundel

@@ -12,13 +12,19 @@ namespace roundel {
 
 namespace {
 
-constexpr int kMaxMissed = 30;        // frames; then a track ends
-constexpr int kMaxImplausible = 15;   // frames; a blurred or half covered marker recovers
-constexpr int kNewcomerFrames = 5;    // a full search is spread over as many frames
-constexpr int kReadingInterval = 16;  // frames
-constexpr double kLocalReach = 2.0;   // of the search around an expected place, in diameters
-constexpr double kMaxGrowth = 1.8;    // of a marker's extent from frame to frame
-constexpr double kSameSize = 1.6;     // ratio of sizes of one marker in neighbouring frames
+constexpr int kMaxMissed = 30;       // frames; then a track ends
+constexpr int kMaxImplausible = 15;  // frames; a blurred or half covered marker recovers
+constexpr int kNewcomerFrames = 5;   // a full search is spread over as many frames
+// How often a settled track is read and weighed anew, and how often the slope of the light and the
+// blur by motion, which change slowly, are fitted along; frames.
+constexpr int kReadingInterval = 64, kLightInterval = 8;
+// What moves as it moved before is followed without a look at its outline; pixels.
+constexpr double kMaxSurprise = 0.6;
+// And so close to the expected place the first step of the fit is mostly the last one.
+constexpr double kClose = 0.2;
+constexpr double kLocalReach = 2.0;  // of the search around an expected place, in diameters
+constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
+constexpr double kSameSize = 1.6;    // ratio of sizes of one marker in neighbouring frames
 constexpr double kSureReading = 0.99;
 
 double mean_radius(const Ellipse& e) {
@@ -34,6 +40,43 @@ double distance(const Ellipse& a, const Ellipse& b) {
   return std::hypot(a.u - b.u, a.v - b.v);
 }
 
+// By how much a pose lies aside of another one, pixels of the outer edge; tilt left out.
+double distance_px(const Pose& from, const Pose& to, double radius_m, double radius_px) {
+  const Eigen::Quaterniond turn = from.orientation.conjugate() * to.orientation;
+  // As seen: depth is less certain, and goes with a shift aside away from the axis.
+  const Eigen::Vector2d seen_from = from.position.head<2>() / from.position.z();
+  const Eigen::Vector2d seen_to = to.position.head<2>() / to.position.z();
+  const double aside = (seen_to - seen_from).norm() * to.position.z() / radius_m;
+  return (aside + 2 * std::abs(turn.z())) * radius_px;
+}
+
+// The camera's driver has just written the picture, mostly not into this processor's cache: what the
+// next marker needs may be on its way while this one is worked on.
+void prefetch(const LumaView& frame, const Ellipse& e) {
+  constexpr std::ptrdiff_t kLine = 64;  // bytes
+  const int reach = static_cast<int>(1.2 * e.a) + 1;
+  const int u = static_cast<int>(e.u), v = static_cast<int>(e.v);
+  const int u0 = std::max(0, u - reach), u1 = std::min(frame.width - 1, u + reach);
+  const int v0 = std::max(0, v - reach), v1 = std::min(frame.height - 1, v + reach);
+  for (int row = v0; row <= v1 && u0 <= u1; ++row) {
+    const std::uint8_t* last = frame.row(row) + u1 * frame.pixel_stride;
+    for (const std::uint8_t* at = frame.row(row) + u0 * frame.pixel_stride; at < last;
+         at += kLine) {
+      __builtin_prefetch(at);
+    }
+    __builtin_prefetch(last);
+  }
+}
+
+// Whether an outline lies within the frame, a pixel to spare.
+bool inside(const Ellipse& e, const LumaView& frame) {
+  const double cosine = std::cos(e.angle), sine = std::sin(e.angle);
+  const double half_u = std::hypot(e.a * cosine, e.b * sine) + 1;
+  const double half_v = std::hypot(e.a * sine, e.b * cosine) + 1;
+  return e.u >= half_u && e.v >= half_v && e.u + half_u <= frame.width - 1 &&
+         e.v + half_v <= frame.height - 1;
+}
+
 }  // namespace
 
 struct Tracker::Impl {
@@ -46,6 +89,11 @@ struct Tracker::Impl {
   }
 
   void follow_tracks(const LumaView& frame);
+  bool only_fitted(const Track& track) const;
+  bool in_new_light(const Track& track) const;
+  std::optional<Observation> fit(const LumaView& frame, const Track& track,
+                                 const Expectation& expected);
+  std::optional<Observation> follow_closely(const LumaView& frame, const Track& track);
   void search_for_lost(const LumaView& frame);
   bool follow(const LumaView& frame, const Track& track);
   Observation observe(const LumaView& frame, const Track& track);
@@ -106,15 +154,64 @@ void Tracker::Impl::search_nearby(const LumaView& frame, const Track& track) {
   search.search(frame, area, spacing, static_cast<std::size_t>(parameters.max_markers), found);
 }
 
-// A settled track is fitted only; from time to time it is read and weighed anew like all others.
+// Whether a track only has to be fitted, not read and weighed anew; which it is from time to time.
+bool Tracker::Impl::only_fitted(const Track& track) const {
+  const bool its_turn = (frames + track.number) % kReadingInterval == 0;
+  return !its_turn && track.settled(observer.id_count());
+}
+
+bool Tracker::Impl::in_new_light(const Track& track) const {
+  return (frames + track.number) % kLightInterval == 0;
+}
+
+// What a fit does not tell anew it takes from the track.
+std::optional<Observation> Tracker::Impl::fit(const LumaView& frame, const Track& track,
+                                              const Expectation& expected) {
+  const auto& last = track.observation.poses[static_cast<std::size_t>(track.pose_index)];
+  auto followed = observer.follow(frame, last, expected);
+  if (followed) {
+    followed->surprise_px = distance_px(track.predicted_pose(), followed->poses[0].pose,
+                                        parameters.diameter_m / 2, expected.ellipse.a);
+    followed->id = track.observation.id;
+    followed->id_probability = track.observation.id_probability;
+  }
+  return followed;
+}
+
+// A marker that moves as it did before is fitted where that leads, without a look for its outline.
+std::optional<Observation> Tracker::Impl::follow_closely(const LumaView& frame,
+                                                         const Track& track) {
+  if (!(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return std::nullopt;
+  Expectation expected;
+  expected.pose = track.predicted_pose();
+  const auto outline = observer.outline(expected.pose);
+  if (!outline || !inside(*outline, frame)) return std::nullopt;
+  if (search.is_claimed(static_cast<int>(outline->u), static_cast<int>(outline->v))) {
+    return std::nullopt;
+  }
+  const auto levels = measure_levels(frame, *outline, parameters.min_contrast);
+  if (!levels) return std::nullopt;
+  expected.ellipse = *outline;
+  expected.levels = *levels;
+  expected.in_new_light = in_new_light(track);
+  expected.close = track.surprise_px < kClose;
+  auto followed = fit(frame, track, expected);
+  if (!followed || followed->surprise_px > kMaxSurprise) return std::nullopt;
+  followed->segment.ellipse = observer.outline(followed->poses[0].pose).value_or(*outline);
+  search.claim(followed->segment.ellipse, frame.height);
+  return followed;
+}
+
 Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
   const Segment& segment = search.segment();
-  const bool its_turn = (frames + track.number) % kReadingInterval == 0;
-  if (!its_turn && track.settled(observer.id_count())) {
-    const auto& last = track.observation.poses[static_cast<std::size_t>(track.pose_index)];
-    if (auto followed = observer.follow(frame, segment, last, track.ellipse, track.turn)) {
-      followed->id = track.observation.id;
-      followed->id_probability = track.observation.id_probability;
+  if (only_fitted(track)) {
+    Expectation expected{track.predicted_pose(), segment.ellipse, segment.levels};
+    expected.in_new_light = in_new_light(track);
+    expected.pose.position =
+        track.observation.poses[static_cast<std::size_t>(track.pose_index)].pose.position;
+    const bool placed = observer.move(expected.pose, track.ellipse, segment.ellipse);
+    if (auto followed = placed ? fit(frame, track, expected) : std::nullopt) {
+      followed->segment = segment;
       return *followed;
     }
   }
@@ -122,9 +219,14 @@ Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
 }
 
 void Tracker::Impl::follow_tracks(const LumaView& frame) {
-  for (Track& track : tracks) {
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    Track& track = tracks[i];
+    if (i + 1 < tracks.size()) prefetch(frame, tracks[i + 1].predicted());
     track.seen = false;
-    if (track.missed == 0 && follow(frame, track)) {
+    if (track.missed != 0) continue;
+    if (const auto followed = follow_closely(frame, track)) {
+      track.update(*followed, observer.id_count());
+    } else if (follow(frame, track)) {
       track.update(observe(frame, track), observer.id_count());
     }
   }

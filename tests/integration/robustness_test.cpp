@@ -3,45 +3,18 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numbers>
-#include <vector>
 
 #include "core/detector.hpp"
-#include "core/necklace.hpp"
-#include "core/plane_projection.hpp"
 #include "core/tracker.hpp"
-#include "simulator/random.hpp"
-#include "simulator/renderer.hpp"
+#include "tests/integration/one_marker.hpp"
 
 namespace roundel {
 namespace {
 
-constexpr int kId = 5, kBits = 8;
-constexpr double kDegree = std::numbers::pi / 180;
-
-CameraModel camera() {
-  CameraModel camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 920;
-  camera.cx = 159.5;
-  camera.cy = 119.5;
-  return camera;
-}
-
-SceneMarker marker_at(const Eigen::Vector3d& centre, double incidence, double diameter_m) {
-  SceneMarker marker;
-  marker.bits = kBits;
-  marker.word = NecklaceCode(kBits, 1).word(kId).value();
-  marker.diameter_m = diameter_m;
-  const Eigen::Vector3d ray = -centre.normalized();
-  const Eigen::Vector3d axis = Eigen::AngleAxisd(0.8, ray) * ray.unitOrthogonal();
-  marker.pose = pose_from_circle({centre, Eigen::AngleAxisd(incidence, axis) * ray}, 0.6);
-  return marker;
-}
+using namespace one_marker;
 
 Imaging usual_imaging() {
-  return {.black = 35, .white = 215, .floor = 120, .blur_px = 0.7, .noise_sigma = 3};
+  return imaging(0.7, 3);
 }
 
 // A tracker's view of a marker that stands still, `usual` frames undisturbed before it is looked
@@ -57,8 +30,7 @@ Seen look_at(const SceneMarker& marker, const Imaging& usual, const Imaging& dis
   parameters.diameter_m = marker.diameter_m;
   Tracker tracker(parameters, camera());
   Renderer before(camera(), usual), now(camera(), disturbed);
-  Scene scene;
-  scene.markers.push_back(marker);
+  const Scene scene = scene_of(marker);
   GreyImage image;
   Seen seen;
   for (std::uint64_t frame = 0; frame < 60; ++frame) {
