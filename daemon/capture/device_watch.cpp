@@ -19,12 +19,12 @@ DeviceWatch::DeviceWatch(const char* folder)
 
 bool DeviceWatch::take() {
   bool changed = false;
-  alignas(inotify_event) std::array<char, 4096> events;
+  alignas(inotify_event) std::array<char, 4096> events{};
   for (;;) {
     const ssize_t length = ::read(descriptor_.get(), events.data(), events.size());
     if (length <= 0) return changed;
     for (std::size_t at = 0; at < static_cast<std::size_t>(length);) {
-      inotify_event event;
+      inotify_event event{};
       std::memcpy(&event, events.data() + at, sizeof(event));
       const char* const name = events.data() + at + sizeof(event);
       if (event.len > 0 && std::string_view(name).starts_with("video")) changed = true;

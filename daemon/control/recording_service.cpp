@@ -35,7 +35,7 @@ class RecordingStream final : public HttpStream {
     sent_ = 0;
     text_.clear();
     pixels_ = {};
-    if (!has_entry_) return false;
+    if (entry == nullptr) return false;
     text_ = json_line(recorded_frame_json(*entry));
     const GreyImage& picture = entry->frame.picture;
     pixels_ = {reinterpret_cast<const char*>(picture.pixels.data()), picture.pixels.size()};

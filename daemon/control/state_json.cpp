@@ -72,7 +72,8 @@ Json arena_json(const ArenaCalibration& calibration) {
 }
 
 void refuse_unknown(const Json& json, std::initializer_list<const char*> known) {
-  for (const auto& [key, value] : json.items()) {
+  for (const auto& item : json.items()) {
+    const std::string& key = item.key();
     if (std::none_of(known.begin(), known.end(), [&](const char* k) { return key == k; })) {
       throw std::runtime_error(fmt::format("there is no field {}", key));
     }
