@@ -77,9 +77,15 @@ double CodeReader::grid_phase() const {
   return phase;  // in samples, [0, per_half_]: a border between half-teeth
 }
 
-double CodeReader::middle_at(double sample) const {
-  const double angle = kTwoPi * sample / samples();
-  return teeth_.middle[0] + teeth_.middle[1] * std::cos(angle) + teeth_.middle[2] * std::sin(angle);
+void CodeReader::take_off_middle() {
+  const int count = samples();
+  const std::complex<double> turn = std::polar(1.0, kTwoPi / count);
+  std::complex<double> direction = 1;
+  for (int k = 0; k < count; ++k, direction *= turn) {
+    const auto at = static_cast<std::size_t>(k);
+    height_[at] = signal_[at] - teeth_.middle[0] - teeth_.middle[1] * direction.real() -
+                  teeth_.middle[2] * direction.imag();
+  }
 }
 
 bool CodeReader::fit_half_teeth(double phase, double contrast) {
@@ -210,11 +216,12 @@ void CodeReader::decode(CodeReading& reading, int& start_half) {
   start_half = best.start;
 }
 
-void CodeReader::measure_edges(double& phase, CodeReading& reading) const {
+void CodeReader::measure_edges(double& phase, CodeReading& reading) {
+  take_off_middle();
   const int half_count = halves(), count = samples();
   // Signed so that no index below turns negative, whatever the phase.
   const auto wrap = [count](int k) { return static_cast<std::size_t>((k + 2 * count) % count); };
-  const auto height = [&](int k) { return signal_[wrap(k)] - middle_at(k); };
+  const auto height = [&](int k) { return height_[wrap(k)]; };
   struct Edge {
     double deviation, weight;  // samples; square of pixels a sample
   };

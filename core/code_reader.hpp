@@ -55,15 +55,16 @@ class CodeReader {
   double grid_phase() const;
   bool fit_half_teeth(double phase, double contrast);
   void decode(CodeReading& reading, int& start_half);
-  void measure_edges(double& phase, CodeReading& reading) const;
+  void measure_edges(double& phase, CodeReading& reading);
 
   int halves() const { return 2 * code_.bits(); }
   int samples() const { return halves() * per_half_; }
-  double middle_at(double sample) const;
+  void take_off_middle();
 
   NecklaceCode code_;
   int per_half_ = 0;                                // samples a half-tooth in this reading
   std::array<float, kMaxSamples> signal_{};         // grey levels around the ring
+  std::array<double, kMaxSamples> height_{};        // the same over the local middle
   std::array<Eigen::Vector2f, kMaxSamples> place_;  // of the samples at the middle radius, pixels
   HalfTeeth teeth_;
 };

@@ -47,12 +47,13 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
 
 std::array<Cubic, 2> LensPatch::cubic() const {
   std::array<Cubic, 2> cubic{};
-  constexpr std::array<int, kTerms - 1> kOrder = {1, 1, 2, 2, 2, 3, 3, 3, 3};
+  const std::array<double, 4> power = {1, scale_, scale_ * scale_, scale_ * scale_ * scale_};
+  constexpr std::array<std::size_t, kTerms - 1> kOrder = {1, 1, 2, 2, 2, 3, 3, 3, 3};
   for (int axis = 0; axis < 2; ++axis) {
     for (int term = 1; term < kTerms; ++term) {
       const auto k = static_cast<std::size_t>(term - 1);
       cubic[static_cast<std::size_t>(axis)][k] =
-          static_cast<float>(coefficients_(axis, term) * std::pow(scale_, kOrder[k]));
+          static_cast<float>(coefficients_(axis, term) * power[kOrder[k]]);
     }
   }
   return cubic;

@@ -35,6 +35,8 @@ constexpr double kDecided = 1000;
 // it; a hypothesis that it leaves behind by so much in its log-likelihood is not refined further.
 constexpr int kRoughEvery = 4, kRoughPixels = 300;
 constexpr double kFarBehind = 40;
+// Standard deviations that its last step may leave undone.
+constexpr double kRoughlySettled = 0.5;
 constexpr double kSame = 0.02;  // of the normals, radians
 
 // Residuals that a roughly fitted start adds, share of the contrast.
@@ -239,7 +241,9 @@ void Observer::fit_roughly(const Segment& segment, std::array<Candidate, 2>& can
   FitPlan plan;
   plan.unknowns = kFollowedUnknowns;
   plan.rough_every = std::clamp(fit_.loaded_pixels() / kRoughPixels, 1, kRoughEvery);
-  plan.rough_steps = plan.min_steps = plan.max_steps = 3;
+  plan.rough_steps = plan.max_steps = 3;
+  plan.min_steps = 1;
+  plan.settled = kRoughlySettled;
   plan.deviation = kFirstDeviation * segment.levels.contrast();
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
@@ -273,6 +277,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   if (loaded) fit_roughly(segment, candidates);
   FitPlan plan;
   plan.rough_steps = 0;
+  plan.min_steps = 1;
   plan.max_steps = 5;
   plan.weigh_parts = true;
   for (std::size_t i = 0; i < 2; ++i) {

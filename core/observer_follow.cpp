@@ -14,9 +14,9 @@ namespace {
 constexpr double kReachBlurs = 2.5, kReachSlack = 0.5;  // pixels
 constexpr double kMaxReach = 4.0;
 
-// Standard deviations that the last step of a followed marker may leave undone: the error grows by
-// half a percent.
-constexpr double kSettled = 0.03;
+// Standard deviations that the last step of a followed marker may leave undone: at that the error
+// grows by two percent, mostly by much less.
+constexpr double kSettled = 0.2;
 
 // Beyond that the light has changed, share of the contrast.
 constexpr double kSameLight = 0.1;

@@ -58,11 +58,20 @@ double variance_of(const PhotometricState& state, double mean_square) {
 
 // What a step leaves undone, in standard deviations of the result. A blurred edge looks alike on
 // both sides, so that a Gauss-Newton step by d is wrong only in the third order, by d^3 / 12 in
-// blurs; some edges move by more than the mean. `gain` is the square of the step in standard
-// deviations.
-double left_by(double gain, double moved_blurs) {
+// blurs; some edges move by more than the mean. A turn out of the plane foreshortens in the second
+// order.
+struct StepSize {
+  double gain;            // square of the step in standard deviations
+  double moved_blurs;     // of the edges, root of the mean square
+  double foreshortening;  // pixels, beyond what the derivatives tell
+  double edge_sigma_px;   // standard deviation of a shift of all edges together
+};
+double left_by(const StepSize& step) {
   constexpr double kUneven = 3;
-  return std::sqrt(std::max(0.0, gain)) * kUneven * moved_blurs * moved_blurs / 12;
+  // Mostly another distance looks like it.
+  constexpr double kUnlikeDistance = 0.7;
+  return std::sqrt(step.gain) * kUneven * step.moved_blurs * step.moved_blurs / 12 +
+         kUnlikeDistance * step.foreshortening / step.edge_sigma_px;
 }
 
 }  // namespace
@@ -71,9 +80,6 @@ struct PhotometricFit::Step {
   Vector change = Vector::Zero();
   double mean_square = 0;        // of the residuals before it
   double mean_square_after = 0;  // to second order
-  double gain = 0;      // what it takes off the sum of squares, in units of the residuals' variance
-  double moved_px = 0;  // by which edges move and widen in the image, root of the mean square: the
-                        // shift of all of them that would take as much off
   bool last = false;
   PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes; when last
   // The same for all unknowns: by how much a pull at one of them moves the pose.
@@ -113,16 +119,16 @@ PhotometricModel PhotometricFit::model_of(const PhotometricState& state, const P
   PhotometricModel m{};
   // Everything is scaled by the depth at the middle, which keeps single precision exact enough.
   const double scale = 1 / at.z();
+  const Eigen::Matrix<double, 3, 2> by_pixel = to_plane.leftCols<2>() * pixels_.pixel_slope();
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
+    m.by_u[k] = static_cast<float>(by_pixel(i, 0) * scale);
+    m.by_v[k] = static_cast<float>(by_pixel(i, 1) * scale);
     m.at[k] = static_cast<float>(at[i] * scale);
     m.by_x[k] = static_cast<float>(to_plane(i, 0) * scale);
     m.by_y[k] = static_cast<float>(to_plane(i, 1) * scale);
     m.eye[k] = static_cast<float>(eye[i]);
   }
-  const Eigen::Matrix2d& slope = pixels_.pixel_slope();
-  m.pixel_slope = {static_cast<float>(slope(0, 0)), static_cast<float>(slope(0, 1)),
-                   static_cast<float>(slope(1, 0)), static_cast<float>(slope(1, 1))};
   m.dark = static_cast<float>(state.dark);
   m.contrast = static_cast<float>(state.contrast);
   m.slope_x = static_cast<float>(state.slope_x);
@@ -198,17 +204,25 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
   const auto change = step.change.template head<kCount>();
-  step.gain = right_side.dot(change) / variance;
   // What the step takes off the residuals alone, without what was known beforehand.
   const double taken_off = change.dot(2 * seen - right_side + known.cwiseProduct(change));
   step.mean_square_after = std::max(0.0, static_cast<double>(sums.squares) - taken_off) /
                            static_cast<double>(std::max(1.0F, sums.weights));
   const auto shift_squares = static_cast<double>(sums.normal_matrix[kShift * (kShift + 3) / 2]);
-  const double moved = std::max(0.0, step.gain) * variance / std::max(shift_squares, 1e-30);
-  step.moved_px = std::sqrt(moved) + std::abs(step.change[kBlur]) * state.blur_px;
-  const bool settled = left_by(step.gain, step.moved_px / state.blur_px) < plan.settled;
-  step.last = (settled && taken >= std::max(plan.min_steps, plan.rough_steps + 1)) ||
-              taken >= plan.max_steps;
+  StepSize size{};
+  size.gain = std::max(0.0, right_side.dot(change) / variance);
+  size.edge_sigma_px = std::sqrt(variance / std::max(shift_squares, 1e-30));
+  // The step takes as much off as if all edges were shifted by so many pixels.
+  size.moved_blurs =
+      std::sqrt(size.gain) * size.edge_sigma_px / state.blur_px + std::abs(step.change[kBlur]);
+  const double radius_px =
+      radius_m_ /
+      (state.pose.position.z() * std::sqrt(std::abs(pixels_.pixel_slope().determinant()) + 1e-30));
+  size.foreshortening = radius_px * step.change.segment<2>(kTurnX).squaredNorm() / 2;
+  const bool settled = left_by(size) < plan.settled;
+  const bool rough_only = plan.rough_steps >= plan.max_steps;
+  const int least = rough_only ? plan.min_steps : std::max(plan.min_steps, plan.rough_steps + 1);
+  step.last = (settled && taken >= least) || taken >= plan.max_steps;
   if (step.last) {
     const Eigen::Matrix<double, kCount, 6> columns =
         solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());

@@ -12,43 +12,45 @@ namespace {
 
 using photometric::Expected;
 using photometric::PlanePoint;
-using simd::Float8;
 using simd::splat;
 
-// Rows of the linearised equations of some pixels, weighted; the residuals are the last column. One
-// group of eight pixels after the other, so that a sum is taken to memory once for several groups.
-constexpr int kGroups = kPixelBlock / simd::kLanes;
-template <int kUnknowns>
-using Rows = std::array<std::array<Float8, kGroups>, kUnknowns + 1>;
+// Rows of the linearised equations of a block of pixels, weighted; the residuals are the last
+// column. One group of pixels after the other, so that a sum is taken to memory once for several
+// groups.
+template <typename V>
+constexpr std::size_t kGroups = kPixelBlock / simd::kLanesOf<V>;
+template <int kUnknowns, typename V>
+using Rows = std::array<std::array<V, kGroups<V>>, kUnknowns + 1>;
 
-ROUNDEL_INLINE Float8 load(const float* from) {
-  Float8 v;
+template <typename V>
+ROUNDEL_INLINE V load(const float* from) {
+  V v;
   __builtin_memcpy(&v, from, sizeof v);
   return v;
 }
 
 // One group's rows; returns the weights.
-template <int kUnknowns>
-ROUNDEL_INLINE Float8 fill_rows(const PhotometricModel& m, const PlanePoint& p, const Expected& e,
-                                const Float8& grey, const Float8& root_weight, std::size_t group,
-                                Rows<kUnknowns>& rows) {
-  const Float8 light = 1 + m.slope_x * p.x + m.slope_y * p.y;
-  const Float8 print = m.dark + m.contrast * e.bright;
-  const Float8 residual = (grey - light * print) * root_weight;
-  const Float8 size = simd::abs(residual);
-  const Float8 trust =
-      simd::select(size > m.robust_scale, m.robust_scale / (size + 1e-9F), splat(1));
-  const Float8 kept = simd::select(size > m.outlier, splat(0), trust);
-  const Float8 root_trust = simd::sqrt(kept);
-  const Float8 weight = root_weight * root_trust;
+template <int kUnknowns, typename V>
+ROUNDEL_INLINE V fill_rows(const PhotometricModel& m, const PlanePoint<V>& p, const Expected<V>& e,
+                           const V& grey, const V& root_weight, std::size_t group,
+                           Rows<kUnknowns, V>& rows) {
+  const V light = 1 + m.slope_x * p.x + m.slope_y * p.y;
+  const V print = m.dark + m.contrast * e.bright;
+  const V residual = (grey - light * print) * root_weight;
+  const V size = simd::abs<V>(residual);
+  const V trust =
+      simd::select<V>(size > m.robust_scale, m.robust_scale / (size + 1e-9F), splat<V>(1));
+  const V kept = simd::select<V>(size > m.outlier, splat<V>(0), trust);
+  const V root_trust = simd::sqrt<V>(kept);
+  const V weight = root_weight * root_trust;
 
-  const Float8 gain = weight * light * m.contrast;
-  const Float8 by_x = gain * (e.by_radius * p.cosine - e.by_arc * p.sine);
-  const Float8 by_y = gain * (e.by_radius * p.sine + e.by_arc * p.cosine);
+  const V gain = weight * light * m.contrast;
+  const V by_x = gain * (e.by_radius * p.cosine - e.by_arc * p.sine);
+  const V by_y = gain * (e.by_radius * p.sine + e.by_arc * p.cosine);
   // What a pixel sees when its point of the marker rises out of the plane: it moves toward the eye.
   const float per_height = 1 / m.eye[2];
-  const Float8 by_rise = (by_x * (m.eye[0] - p.x) + by_y * (m.eye[1] - p.y)) * per_height;
-  const auto row = [&](int unknown) -> Float8& {
+  const V by_rise = (by_x * (m.eye[0] - p.x) + by_y * (m.eye[1] - p.y)) * per_height;
+  const auto row = [&](int unknown) -> V& {
     return rows[static_cast<std::size_t>(unknown)][group];
   };
   row(kMoveX) = -by_x;
@@ -57,7 +59,7 @@ ROUNDEL_INLINE Float8 fill_rows(const PhotometricModel& m, const PlanePoint& p, 
   row(kTurnX) = p.y * by_rise;
   row(kTurnY) = -p.x * by_rise;
   row(kTurnZ) = p.y * by_x - p.x * by_y;
-  const Float8 lit = weight * light;
+  const V lit = weight * light;
   row(kDark) = lit;
   row(kContrast) = lit * e.bright;
   row(kBlur) = gain * e.by_blur;
@@ -71,67 +73,88 @@ ROUNDEL_INLINE Float8 fill_rows(const PhotometricModel& m, const PlanePoint& p, 
   if constexpr (kUnknowns > kCodeUnknowns) row(kInner) = gain * e.by_inner;
   row(kUnknowns) = residual * root_trust;
   // Filling has no weight; otherwise a pixel counts by how far it is believed.
-  return simd::select(root_weight > 0, kept, splat(0));
+  return simd::select<V>(root_weight > 0, kept, splat<V>(0));
 }
 
-template <int kUnknowns, typename Model>
+// Sixteen sums of every sixteenth pixel each, however many pixels are worked on at once: in one
+// register, or in two.
+template <typename V>
+struct Sums16 {
+  std::array<V, 16 / simd::kLanesOf<V>> parts{};
+
+  // Adds the products of two rows of a block.
+  ROUNDEL_INLINE void add(const std::array<V, kGroups<V>>& a, const std::array<V, kGroups<V>>& b) {
+    constexpr std::size_t kParts = 16 / simd::kLanesOf<V>;
+    static_assert(kGroups<V> == 2 * kParts);
+    for (std::size_t k = 0; k < kParts; ++k) {
+      parts[k] += a[k] * b[k] + a[k + kParts] * b[k + kParts];
+    }
+  }
+  ROUNDEL_INLINE float total() const {
+    if constexpr (simd::kLanesOf<V> == 16) {
+      return simd::sum(simd::lower_half(parts[0]) + simd::upper_half(parts[0]));
+    } else {
+      return simd::sum(parts[0] + parts[1]);
+    }
+  }
+};
+
+template <int kUnknowns, typename V, typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr std::size_t kColumns = kUnknowns + 1;
-  std::array<Float8, kColumns*(kColumns + 1) / 2> products{};
-  Float8 weights = splat(0);
-  Rows<kUnknowns> rows;
+  std::array<Sums16<V>, kColumns*(kColumns + 1) / 2> products{};
+  Sums16<V> weights;
+  Rows<kUnknowns, V> rows;
+  std::array<V, kGroups<V>> trust, ones;
+  ones.fill(splat<V>(1));
   for (int i = 0; i < pixels.count; i += pixels.every * kPixelBlock) {
-    for (int group = 0; group < kGroups; ++group) {
-      const int at = i + group * simd::kLanes;
-      const PlanePoint p = photometric::plane_point(m, load(pixels.x + at), load(pixels.y + at));
-      weights +=
-          fill_rows<kUnknowns>(m, p, expect(p), load(pixels.grey + at), load(pixels.weight + at),
-                               static_cast<std::size_t>(group), rows);
+    for (std::size_t group = 0; group < kGroups<V>; ++group) {
+      const int at = i + static_cast<int>(group) * simd::kLanesOf<V>;
+      const auto p = photometric::plane_point<V>(m, load<V>(pixels.x + at), load<V>(pixels.y + at));
+      trust[group] = fill_rows<kUnknowns, V>(m, p, expect(p), load<V>(pixels.grey + at),
+                                             load<V>(pixels.weight + at), group, rows);
     }
+    weights.add(trust, ones);
     std::size_t at = 0;
     for (std::size_t r = 0; r < kColumns; ++r) {
       const auto row = rows[r];
-      for (std::size_t c = 0; c <= r; ++c, ++at) {
-        const auto& column = rows[c];
-        products[at] +=
-            (row[0] * column[0] + row[1] * column[1]) + (row[2] * column[2] + row[3] * column[3]);
-      }
+      for (std::size_t c = 0; c <= r; ++c, ++at) products[at].add(row, rows[c]);
     }
   }
   constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
-  for (std::size_t k = 0; k < kEntries; ++k) sums.normal_matrix[k] += simd::sum(products[k]);
+  for (std::size_t k = 0; k < kEntries; ++k) sums.normal_matrix[k] += products[k].total();
   for (std::size_t k = 0; k < kUnknowns; ++k) {
-    sums.right_side[k] += simd::sum(products[kEntries + k]);
+    sums.right_side[k] += products[kEntries + k].total();
   }
-  sums.squares += simd::sum(products.back());
-  sums.weights += simd::sum(weights);
+  sums.squares += products.back().total();
+  sums.weights += weights.total();
 }
 
-template <int kUnknowns, bool kBoxed>
+template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add_pixels<kUnknowns>(
-      m, pixels, sums, [&](const PlanePoint& p) __attribute__((always_inline)) {
-        return photometric::outer_rim<kBoxed>(m, p);
+  add_pixels<kUnknowns, V>(
+      m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
+        return photometric::outer_rim<kBoxed, V>(m, p);
       });
 }
 
-template <int kUnknowns, bool kBoxed>
+template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixels,
                              PhotometricSums& sums) {
-  add_pixels<kUnknowns>(
-      m, pixels, sums, [&](const PlanePoint& p) __attribute__((always_inline)) {
-        return photometric::code_ring<kBoxed>(m, p);
+  add_pixels<kUnknowns, V>(
+      m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
+        return photometric::code_ring<kBoxed, V>(m, p);
       });
 }
 
-template <int kUnknowns, bool kBoxed>
+template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_plain(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add_pixels<kUnknowns>(
-      m, pixels, sums, [&](const PlanePoint& p) __attribute__((always_inline)) {
-        return photometric::plain_centre<kBoxed>(m, p);
+  add_pixels<kUnknowns, V>(
+      m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
+        return photometric::plain_centre<kBoxed, V>(m, p);
       });
 }
 
@@ -145,33 +168,34 @@ struct Kernels {
 
 // The attribute is the whole difference between the sets of kernels; the bodies are inlined.
 // NOLINTBEGIN(bugprone-macro-parentheses): attributes and names take none.
-#define ROUNDEL_KERNEL(name, attribute, part, unknowns, boxed)                                \
+#define ROUNDEL_KERNEL(name, attribute, part, unknowns, boxed, lanes)                         \
   attribute void name(const PhotometricModel& m, const PixelColumns& p, PhotometricSums& s) { \
-    part<unknowns, boxed>(m, p, s);                                                           \
+    part<unknowns, boxed, lanes>(m, p, s);                                                    \
   }
-#define ROUNDEL_KERNELS(set, attribute, boxed)                                                \
-  ROUNDEL_KERNEL(set##_followed_outer, attribute, add_outer, kFollowedUnknowns, boxed)        \
-  ROUNDEL_KERNEL(set##_followed_code, attribute, add_code, kFollowedUnknowns, boxed)          \
-  ROUNDEL_KERNEL(set##_code_outer, attribute, add_outer, kCodeUnknowns, boxed)                \
-  ROUNDEL_KERNEL(set##_code_code, attribute, add_code, kCodeUnknowns, boxed)                  \
-  ROUNDEL_KERNEL(set##_outer, attribute, add_outer, kPhotometricUnknowns, boxed)              \
-  ROUNDEL_KERNEL(set##_plain, attribute, add_plain, kPhotometricUnknowns, boxed)              \
+#define ROUNDEL_KERNELS(set, attribute, boxed, lanes)                                         \
+  ROUNDEL_KERNEL(set##_followed_outer, attribute, add_outer, kFollowedUnknowns, boxed, lanes) \
+  ROUNDEL_KERNEL(set##_followed_code, attribute, add_code, kFollowedUnknowns, boxed, lanes)   \
+  ROUNDEL_KERNEL(set##_code_outer, attribute, add_outer, kCodeUnknowns, boxed, lanes)         \
+  ROUNDEL_KERNEL(set##_code_code, attribute, add_code, kCodeUnknowns, boxed, lanes)           \
+  ROUNDEL_KERNEL(set##_outer, attribute, add_outer, kPhotometricUnknowns, boxed, lanes)       \
+  ROUNDEL_KERNEL(set##_plain, attribute, add_plain, kPhotometricUnknowns, boxed, lanes)       \
   constexpr Kernels::Set k_##set{set##_followed_outer, set##_followed_code, set##_code_outer, \
                                  set##_code_code,      set##_outer,         set##_plain};
 
 // NOLINTEND(bugprone-macro-parentheses)
-ROUNDEL_KERNELS(baseline, , false)
-ROUNDEL_KERNELS(baseline_boxed, , true)
+ROUNDEL_KERNELS(baseline, , false, simd::Float8)
+ROUNDEL_KERNELS(baseline_boxed, , true, simd::Float8)
 constexpr Kernels kBaselineKernels{k_baseline, k_baseline_boxed};
 #if defined(__x86_64__)
 // Without fused multiply-add, which would round otherwise than the baseline.
-ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))), false)
-ROUNDEL_KERNELS(avx2_boxed, __attribute__((target("avx2"))), true)
+ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))), false, simd::Float8)
+ROUNDEL_KERNELS(avx2_boxed, __attribute__((target("avx2"))), true, simd::Float8)
 constexpr Kernels kAvx2Kernels{k_avx2, k_avx2_boxed};
-// Twice as many registers of the same width.
-#define ROUNDEL_AVX512 __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq")))
-ROUNDEL_KERNELS(avx512, ROUNDEL_AVX512, false)
-ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_AVX512, true)
+// Twice as many registers, twice as wide.
+#define ROUNDEL_AVX512 \
+  __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")))
+ROUNDEL_KERNELS(avx512, ROUNDEL_AVX512, false, simd::Float16)
+ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_AVX512, true, simd::Float16)
 constexpr Kernels kAvx512Kernels{k_avx512, k_avx512_boxed};
 #endif
 

@@ -49,8 +49,8 @@ constexpr int kPixelBlock = 32;
 struct PhotometricModel {
   // Homogeneous plane coordinates of a pixel: at + by_x * x + by_y * y; units of the outer radius.
   std::array<float, 3> at, by_x, by_y;
-  std::array<float, 4> pixel_slope;  // d(normalised)/d(pixel), row by row
-  std::array<float, 3> eye;          // the camera in the marker frame, units of the radius
+  std::array<float, 3> by_u, by_v;  // the same by steps of a pixel
+  std::array<float, 3> eye;         // the camera in the marker frame, units of the radius
   float dark, contrast, slope_x, slope_y, blur, shift, stretch_u, stretch_d;
   // Edges are seen through boxes (a pixel's square, an even motion during the exposure), not
   // through a Gaussian of their variance: dearer, and worth it where they are much of the blur.

@@ -200,13 +200,19 @@ struct KernelCase {
   }
 };
 
+// d(normalised)/d(pixel), row by row.
+constexpr std::array<float, 4> kSlope = {1.0F / 800, 0.00002F, -0.00001F, 1.0F / 810};
+
 KernelCase kernel_case(int halves, double low, double high) {
   KernelCase c;
   // A plane one unit of depth away, tilted a little: w = H^-1 n.
   c.model.at = {0.02F, -0.01F, 1.0F};
   c.model.by_x = {40.0F, 3.0F, 0.15F};
   c.model.by_y = {-2.0F, 38.0F, -0.1F};
-  c.model.pixel_slope = {1.0F / 800, 0.00002F, -0.00001F, 1.0F / 810};
+  for (std::size_t k = 0; k < 3; ++k) {  // a pixel is about 1/800
+    c.model.by_u[k] = c.model.by_x[k] * kSlope[0] + c.model.by_y[k] * kSlope[2];
+    c.model.by_v[k] = c.model.by_x[k] * kSlope[1] + c.model.by_y[k] * kSlope[3];
+  }
   c.model.eye = {0.5F, -0.3F, 40.0F};
   c.model.dark = 30;
   c.model.contrast = 170;
@@ -316,7 +322,7 @@ TEST_CASE("a boxed edge looks as the area that it covers of the pixels") {
     }
     return std::hypot(p[0], p[1]) / p[2];
   };
-  const auto& slope = c.model.pixel_slope;
+  const auto& slope = kSlope;
   for (std::size_t i = 0; i < c.x.size(); ++i) {
     constexpr int kParts = 24;
     int outside = 0;
