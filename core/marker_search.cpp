@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/ellipse_rows.hpp"
+#include "core/rounding.hpp"
 
 namespace roundel {
 
@@ -119,13 +120,12 @@ void MarkerSearch::claim_segment() {
 void MarkerSearch::claim(const Ellipse& outline, int frame_height) {
   const EllipseRows rows(outline);
   const double reach = rows.half_height();
-  const int first = std::max(0, static_cast<int>(std::ceil(outline.v - reach)));
-  const int last = std::min(frame_height - 1, static_cast<int>(std::floor(outline.v + reach)));
+  const int first = std::max(0, ceil_int(outline.v - reach));
+  const int last = std::min(frame_height - 1, floor_int(outline.v + reach));
   for (int v = first; v <= last; ++v) {
     const EllipseRows::Span span = rows.inside(v - outline.v, 1);
     if (span.u1 < span.u0) continue;
-    claim({v, static_cast<int>(std::floor(span.u0)), static_cast<int>(std::ceil(span.u1))},
-          Owner::kMarker);
+    claim({v, floor_int(span.u0), ceil_int(span.u1)}, Owner::kMarker);
   }
 }
 
