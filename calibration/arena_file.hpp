@@ -33,8 +33,8 @@ class ArenaStore {
   void save(const ArenaCalibration& calibration);
   // Exchanges the one in use and the one before it, and returns what is in use then.
   ArenaCalibration restore();
-  // None is in use any more; restore() brings it back.
-  void forget();
+  // None is in use any more; restore() brings it back. False: none was.
+  bool forget();
 
  private:
   std::string path_;

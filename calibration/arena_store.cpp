@@ -67,15 +67,17 @@ ArenaCalibration ArenaStore::restore() {
 }
 
 // A damaged one makes way without taking the place of the one before.
-void ArenaStore::forget() {
+bool ArenaStore::forget() {
   const bool keep = worth_keeping(path_) || !worth_keeping(previous_path());
   const int failed =
       keep ? ::rename(path_.c_str(), previous_path().c_str()) : ::unlink(path_.c_str());
-  if (failed != 0 && errno != ENOENT) {
+  if (failed != 0) {
+    if (errno == ENOENT) return false;
     throw std::runtime_error(
         fmt::format("{}: can't be put aside: {}", path_, std::strerror(errno)));
   }
   sync_folder_of(path_);
+  return true;
 }
 
 }  // namespace roundel

@@ -166,7 +166,8 @@ constexpr std::array kFields = {
     Field{"control.socket", ROUNDEL_TARGET(control.socket), 0, 107},
     Field{"control.group", ROUNDEL_TARGET(control.group), 0, 32},
     Field{"control.web", ROUNDEL_TARGET(control.web), 0, 64, is_web_address_or_empty,
-          "an address in numbers and a port, as in 127.0.0.1:8080 or [::1]:8080, or nothing"},
+          "an address in numbers and a port, as in 127.0.0.1:8080 or \"[::1]:8080\" (with the "
+          "quotes), or nothing"},
     Field{"control.token", ROUNDEL_TARGET(control.token), 0, 128, is_token_or_empty,
           "16 to 128 of the characters A-Z a-z 0-9 _ - . ~, or nothing"},
 };

@@ -280,6 +280,11 @@ LoadedConfiguration read_configuration(const std::string& path,
   } catch (const std::runtime_error& error) {
     throw ConfigError(error.what());
   }
+  // A full disk or an editor at work leaves such files: nobody wants the simulator for it.
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw ConfigError(fmt::format(
+        "{}: is empty; a file with nothing but a comment (#) stands for the defaults", path));
+  }
   return parse_configuration(text, path, overrides);
 }
 

@@ -30,7 +30,9 @@ void add_folder(const std::string& folder, std::vector<std::string>& files) {
   std::vector<std::string> found;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (has_extension(entry->path(), {".png", ".jpg", ".jpeg", ".pgm"})) {
+    std::error_code unknown;
+    if (has_extension(entry->path(), {".png", ".jpg", ".jpeg", ".pgm"}) &&
+        !entry->is_fifo(unknown)) {
       found.push_back(entry->path().string());
     }
   }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <filesystem>
 #include <stdexcept>
 
 #include "calibration/camera_file.hpp"
@@ -61,6 +62,15 @@ std::uint32_t fourcc_of(const LoadedConfiguration& configuration) {
                                         fmt::join(names, ", ")));
 }
 
+// A pipe would be waited for, and the frame loop with it.
+void require_files(const LoadedConfiguration& configuration, const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return;  // who reads them knows more
+  if (std::filesystem::is_regular_file(status) || std::filesystem::is_directory(status)) return;
+  throw configuration.error("files.paths", fmt::format("{} is neither a file nor a folder", path));
+}
+
 }  // namespace
 
 CameraParameters camera_parameters(const LoadedConfiguration& configuration) {
@@ -86,6 +96,7 @@ std::unique_ptr<FrameSource> make_source(const LoadedConfiguration& configuratio
     return std::make_unique<CameraSource>(camera_parameters(configuration));
   }
   const FilesSettings& files = configuration.values.files;
+  for (const std::string& path : files.paths) require_files(configuration, path);
   return std::make_unique<FilesSource>(FilesParameters{files.paths, files.frame_rate, files.loop});
 }
 

@@ -29,13 +29,24 @@ ArchiveWriter::ArchiveWriter(const std::string& path)
   if (!archive_) throw std::runtime_error("libarchive can't be used");
   require(::archive_write_set_format_filter_by_ext(archive_.get(), path.c_str()));
   require(::archive_write_open_filename(archive_.get(), path.c_str()));
+  open_ = true;
+}
+
+ArchiveWriter::~ArchiveWriter() {
+  archive_.reset();
+  std::error_code error;
+  if (open_ && std::filesystem::is_regular_file(path_, error))
+    std::filesystem::remove(path_, error);
 }
 
 void ArchiveWriter::require(int result) const {
   if (result >= ARCHIVE_WARN) return;
-  const char* const reason = ::archive_error_string(archive_.get());
-  throw std::runtime_error(fmt::format("{} can't be written: {}", path_,
-                                       reason != nullptr ? reason : "no reason is known"));
+  const char* const text = ::archive_error_string(archive_.get());
+  std::string reason = text != nullptr ? text : "no reason is known";
+  // libarchive's own words do not tell that the disk is full.
+  const int number = ::archive_errno(archive_.get());
+  if (number > 0) reason += fmt::format(" ({})", std::strerror(number));
+  throw std::runtime_error(fmt::format("{} can't be written: {}", path_, reason));
 }
 
 void ArchiveWriter::begin(const std::string& name, std::int64_t size) {
@@ -72,6 +83,7 @@ void ArchiveWriter::add_file(const std::string& name, const std::string& path) {
 
 void ArchiveWriter::close() {
   require(::archive_write_close(archive_.get()));
+  open_ = false;
 }
 
 }  // namespace roundel

@@ -163,8 +163,7 @@ void listen(const ListenOptions& options) {
       summary.add(*frame, received_utime, steady_us());
       if (options.summary) continue;
       if (options.json) {
-        fmt::print("{}", json_line(received_json(*frame, subscriber->counts(), received_utime)));
-        std::fflush(stdout);
+        print(json_line(received_json(*frame, subscriber->counts(), received_utime)));
       } else {
         table.add(*frame, subscriber->counts(), received_utime, steady_us());
       }

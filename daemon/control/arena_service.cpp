@@ -88,7 +88,7 @@ ArenaCalibration ArenaService::restore() {
 void ArenaService::forget() {
   ArenaStore kept = store();
   const std::lock_guard lock(mutex_);
-  kept.forget();
+  if (!kept.forget()) return;
   log_info("arena: the calibration has been put aside");
   loop_.post([](LoopControl& loop) { loop.set_arena(nullptr); });
 }

@@ -19,6 +19,8 @@ namespace {
 
 constexpr int kTickMs = 250;
 constexpr std::int64_t kOverduePeriodUs = 1'000'000;
+// Whoever has asked for the reload that moves the server gets the answer from the old one.
+constexpr std::int64_t kFarewellUs = 250'000;
 constexpr int kNiceness = 10;
 
 }  // namespace
@@ -56,6 +58,7 @@ void ControlCenter::serve(const ControlSettings& settings) {
   {
     const std::lock_guard lock(mutex_);
     wanted_ = settings;
+    wanted_since_us_ = now().mono_us;
   }
   news_.wake();
 }
@@ -112,6 +115,8 @@ void ControlCenter::open_servers() {
   std::optional<ControlSettings> wanted;
   {
     const std::lock_guard lock(mutex_);
+    const bool serves = server_ || web_server_;
+    if (serves && now().mono_us - wanted_since_us_ < kFarewellUs) return;
     wanted.swap(wanted_);
   }
   if (!wanted) return;

@@ -69,8 +69,9 @@ class ControlCenter {
   RecordingService recordings_;
   ControlApi api_;
 
-  std::mutex mutex_;  // of the two below
+  std::mutex mutex_;  // of the three below
   std::optional<ControlSettings> wanted_;
+  std::int64_t wanted_since_us_ = 0;
   bool ending_ = false;
 
   // Of the thread.

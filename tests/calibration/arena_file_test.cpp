@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 #include <sys/ptrace.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/user.h>
 #include <sys/wait.h>
@@ -14,6 +13,7 @@
 
 #include "tests/calibration/arena_scene.hpp"
 #include "tests/error_of.hpp"
+#include "tests/file_size_limit.hpp"
 #include "tests/temporary_directory.hpp"
 
 using namespace roundel;
@@ -89,26 +89,6 @@ bool killed_at_call(int calls, Task&& task, std::vector<long>* made = nullptr) {
 }
 
 constexpr int kEndless = 1'000'000;
-
-// Files can't grow beyond a size, as if the disk were full.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(std::size_t bytes) {
-    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before_) == 0);
-    const rlimit limit = {bytes, before_.rlim_max};
-    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
-};
 
 }  // namespace
 
@@ -187,9 +167,9 @@ TEST_CASE("the store keeps the calibration before, and brings it back") {
   CHECK(store.restore().date == "one");
   CHECK(store.load()->date == "one");
   CHECK(store.restore().date == "two");
-  store.forget();
+  CHECK(store.forget());
   CHECK_FALSE(store.load().has_value());
-  store.forget();
+  CHECK_FALSE(store.forget());
   CHECK(store.restore().date == "two");
 }
 

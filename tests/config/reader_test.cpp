@@ -24,10 +24,20 @@ std::string error_for(const std::string& yaml, const std::vector<std::string>& o
 
 }  // namespace
 
-TEST_CASE("an empty file means the defaults") {
+TEST_CASE("what is left out has its default") {
   CHECK(parse("").simulator.robots == 12);
   CHECK(parse("# nothing\n").lcm.channel == "ROUNDEL");
   CHECK(parse("simulator:\nlcm: {}\n").simulator.width == 1920);
+}
+
+TEST_CASE("an empty file is taken for one that was cut off, not for the defaults") {
+  const TemporaryDirectory folder;
+  for (const char* const text : {"", "\n \r\n"}) {
+    const std::string path = folder.write("roundel.yaml", text);
+    CHECK(error_of([&] { read_configuration(path, {}); }).starts_with(path + ": is empty"));
+  }
+  CHECK(read_configuration(folder.write("roundel.yaml", "# all as it is"), {})
+            .values.simulator.robots == 12);
 }
 
 TEST_CASE("values of every type are read") {

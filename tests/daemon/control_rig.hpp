@@ -59,9 +59,13 @@ class ControlRig final : public LoopControl {
   std::atomic<int> arenas_set{0};
   std::atomic<bool> moved{false};
   std::string reload_error;
+  std::string moved_socket;  // by a reload
 
  private:
-  std::string reload() override { return reload_error; }
+  std::string reload() override {
+    if (!moved_socket.empty()) center_.serve({moved_socket, "", "", ""});
+    return reload_error;
+  }
   std::shared_ptr<CameraControls> camera_controls() override { return nullptr; }
   void set_arena(std::shared_ptr<const ArenaCalibration> calibration) override {
     TrackingContext context = *context_;

@@ -185,6 +185,18 @@ TEST_CASE("reload answers with what is wrong") {
   CHECK(has(answer, "a.yaml:3:1: no such key"));
 }
 
+TEST_CASE("a reload that moves the socket is answered at the old one") {
+  const TemporaryDirectory folder;
+  ControlRig rig;
+  rig.moved_socket = folder.file("moved.sock");
+  CHECK(has(ask(rig.socket(), "POST", "/v1/reload"), "200 OK"));
+  for (int i = 0; i < 3000 && ::access(rig.moved_socket.c_str(), F_OK) != 0; ++i) {
+    ::poll(nullptr, 0, 10);
+  }
+  CHECK(has(ask(rig.moved_socket, "GET", "/v1/status"), "200 OK"));
+  CHECK(::access(rig.socket().c_str(), F_OK) != 0);
+}
+
 TEST_CASE("pictures come as JPEG, PNG and PGM") {
   const ControlRig rig;
   const std::string jpeg = ask(rig.socket(), "GET", "/v1/frame.jpg");

@@ -224,6 +224,13 @@ TEST_CASE("roundeld waits for a camera that is not there, through reloads, and e
   folder.write("roundel.yaml", config(", format: PINK"));
   daemon.signal(SIGHUP);
   REQUIRE(daemon.wait_for("the configuration in use stays", kPatience));
+  folder.write("roundel.yaml", "source: files\nfiles: {paths: [" + pipe + "]}\n");
+  daemon.signal(SIGHUP);
+  REQUIRE(
+      daemon.wait_for("neither a file nor a folder; the configuration in use stays", kPatience));
+  folder.write("roundel.yaml", "");
+  daemon.signal(SIGHUP);
+  REQUIRE(daemon.wait_for("stands for the defaults; the configuration in use stays", kPatience));
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (!subscriber.status() && std::chrono::steady_clock::now() < deadline) {
     CHECK(subscriber.next_frame(1s) == nullptr);

@@ -194,6 +194,15 @@ TEST_CASE("a daemon that was stopped for a while publishes nothing old") {
   const std::size_t before = daemon.statuses().size();
   REQUIRE(daemon.receive(kPatienceMs, [&] { return daemon.statuses().size() > before + 1; }));
   CHECK(daemon.statuses().back().dropped_stale >= 1);
+  // Stopped in the midst of a frame: the next one comes 33 ms after this one and takes some 2 ms.
+  for (int delay_us = 28'000; delay_us < 34'000; delay_us += 500) {
+    REQUIRE(daemon.poses_arrive(kPatienceMs));
+    ::usleep(static_cast<unsigned>(delay_us));
+    daemon.process().signal(SIGSTOP);
+    daemon.receive(1000);
+    daemon.process().signal(SIGCONT);
+  }
+  REQUIRE(daemon.poses_arrive(kPatienceMs));
   CHECK_FALSE(daemon.published_us(header_t::CAMERA_LOST, 0).has_value());
   CHECK(fault_in(daemon.frames()) == "");
   CHECK(pictures_are_fresh(film, camera, daemon.frames()));

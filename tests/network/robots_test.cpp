@@ -73,11 +73,30 @@ std::vector<std::string> roundeld(const Recording& recording) {
   return command;
 }
 
+// Packets that came to the machine of this thread, and for which a program there was too slow.
+std::int64_t packets_left_unread() {
+  std::istringstream lines(read_file("/proc/thread-self/net/snmp"));
+  std::vector<std::string> names;
+  for (std::string line, word; std::getline(lines, line);) {
+    if (!line.starts_with("Udp:")) continue;
+    std::istringstream words(line);
+    if (names.empty()) {
+      while (words >> word) names.push_back(word);
+      continue;
+    }
+    for (const std::string& name : names) {
+      if (words >> word && name == "RcvbufErrors") return std::stoll(word);
+    }
+  }
+  throw std::runtime_error("no count of RcvbufErrors");
+}
+
 // What a robot sees in a while.
 struct Reception {
   std::int64_t session = 0, first = -1, last = -1;
   std::int64_t frames = 0, lost = 0, poses = 0, dropped = 0;
-  std::vector<std::int64_t> on_the_way_us;   // from publishing to the robot
+  std::int64_t unread = 0;                  // packets that came, but the robot had no time for them
+  std::vector<std::int64_t> on_the_way_us;  // from publishing to the robot
   std::vector<std::int64_t> since_taken_us;  // from the frame to the robot
 };
 
@@ -94,6 +113,7 @@ Reception receive(std::chrono::seconds how_long) {
   }
   const auto end = std::chrono::steady_clock::now() + how_long;
   const std::int64_t lost_before = subscriber.counts().lost;
+  const std::int64_t unread_before = packets_left_unread();
   while (std::chrono::steady_clock::now() < end) {
     const ReceivedFrame* const frame = subscriber.next_frame(100ms);
     // Anybody can send; who knows the session leaves the rest alone.
@@ -107,6 +127,7 @@ Reception receive(std::chrono::seconds how_long) {
     reception.since_taken_us.push_back(subscriber.received_utime() - frame->header.capture_utime);
   }
   reception.lost = subscriber.counts().lost - lost_before;
+  reception.unread = packets_left_unread() - unread_before;
   return reception;
 }
 
@@ -121,9 +142,10 @@ std::string percentiles(std::vector<std::int64_t> values) {
 
 std::string figures(const Reception& r) {
   return fmt::format(
-      "{} frames, {} lost, {} poses; median / 99th percentile / worst: {} from "
-      "publishing, {} from the frame",
-      r.frames, r.lost, r.poses, percentiles(r.on_the_way_us), percentiles(r.since_taken_us));
+      "{} frames, {} lost ({} packets came, but were not read in time), {} poses; median / 99th "
+      "percentile / worst: {} from publishing, {} from the frame",
+      r.frames, r.lost, r.unread, r.poses, percentiles(r.on_the_way_us),
+      percentiles(r.since_taken_us));
 }
 
 // What somebody in the group might send: noise, and LCM messages of our channels with noise in
@@ -200,7 +222,9 @@ TEST_CASE("a hundred robots at 60 frames/s reach two machines with TTL 1, whoeve
     REQUIRE(reception.frames > 0);
     // What came and what is said to be lost is all that was sent.
     CHECK(reception.frames + reception.lost == reception.last - reception.first);
-    CHECK(reception.lost * 20 < reception.frames);
+    // The network loses next to nothing. On a busy machine a robot may be too slow, which costs a
+    // frame for every packet at most.
+    CHECK((reception.lost - reception.unread) * 20 < reception.frames);
     CHECK(reception.poses >= reception.frames * (kRobots - 2));
     CHECK(reception.dropped == 0);
   };

@@ -4,10 +4,15 @@
 #include <archive_entry.h>
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <map>
 
 #include "tests/child_process.hpp"
+#include "tests/error_of.hpp"
+#include "tests/file_size_limit.hpp"
+#include "tests/random.hpp"
 #include "tests/tools/run_roundel.hpp"
+#include "tools/archive_writer.hpp"
 
 using namespace roundel;
 
@@ -93,4 +98,21 @@ TEST_CASE("a report about a running roundeld has its state, a picture and frames
   CHECK(contains(files.at("CONTENTS.txt"), "A PICTURE"));
   // Looking has not disturbed it.
   CHECK(session() == before);
+}
+
+TEST_CASE("an archive that the disk has no room for is an error that says so, and leaves nothing") {
+  const TemporaryDirectory folder;
+  const std::string path = folder.file("report.tar.gz");
+  test::Random random(1);
+  std::string noise(1 << 20, '\0');
+  for (char& c : noise) c = static_cast<char>(random.integer(0, 255));
+  const FileSizeLimit limit(100'000);
+  const std::string error = error_of([&] {
+    ArchiveWriter archive(path);
+    archive.add("noise", noise);
+    archive.close();
+  });
+  CHECK(contains(error, path + " can't be written"));
+  CHECK(contains(error, "File too large"));  // as a full disk would be "No space left on device"
+  CHECK_FALSE(std::filesystem::exists(path));
 }

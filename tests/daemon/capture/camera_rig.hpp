@@ -30,6 +30,13 @@ inline void open(CameraSource& source, const FakeCamera& camera) {
   }
 }
 
+// Opens the camera, and takes its first frame.
+inline void stream(CameraSource& source, FakeCamera& camera) {
+  open(source, camera);
+  camera.deliver({.sequence = 0});
+  REQUIRE(wait_for_frame(source).has_value());
+}
+
 // Looks after the source until its camera is in a state.
 inline bool reaches(CameraSource& source, CameraState state) {
   for (int i = 0; i < 50 && source.state() != state; ++i) {

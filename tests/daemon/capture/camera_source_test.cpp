@@ -109,9 +109,7 @@ TEST_CASE("a buffer that is not the driver's breaks the stream, not the program"
   for (const std::uint32_t index : {4U, 77U, 0xffff'ffffU}) {
     FakeCamera camera;
     CameraSource source({}, camera);
-    open(source, camera);
-    camera.deliver({.sequence = 0});
-    REQUIRE(wait_for_frame(source).has_value());
+    stream(source, camera);
     camera.deliver({.index = index});
     CHECK(reaches(source, CameraState::kLost));
     open(source, camera);
@@ -146,20 +144,16 @@ TEST_CASE("an unplugged camera is lost, closed, and taken back as it was set") {
   CameraParameters parameters;
   parameters.controls = {{"brightness", "5"}};
   CameraSource source(parameters, camera);
-  open(source, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(source).has_value());
+  stream(source, camera);
 
-  camera.state().plugged = false;
-  camera.break_off(ENODEV);
+  camera.unplug();
   CHECK(reaches(source, CameraState::kLost));
   CHECK(source.identity() == "Fake, serial A");
   CHECK(camera.state().open_now == 0);
   CHECK(camera.state().mapped_now == 0);
   CHECK_THROWS_AS(source.controls()->list(), CameraError);
 
-  camera.state().plugged = true;
-  camera.state().error = 0;
+  camera.plug();
   camera.state().controls[0].value = 1;  // it forgot
   open(source, camera);
   CHECK(source.state() == CameraState::kLost);  // no frame yet
@@ -205,12 +199,9 @@ TEST_CASE(
 TEST_CASE("another camera is not taken in place of the lost one") {
   FakeCamera camera;
   CameraSource source({}, camera);
-  open(source, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(source).has_value());
-  camera.state().plugged = false;
+  stream(source, camera);
   camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false, ""}};
-  camera.break_off(ENODEV);
+  camera.unplug();
   CHECK(reaches(source, CameraState::kLost));
   const int opens = camera.state().opens;
   for (int i = 0; i < 5; ++i) {
@@ -226,13 +217,10 @@ TEST_CASE(
   camera.state().controls = {
       {V4L2_CID_BRIGHTNESS, "Brightness", V4L2_CTRL_TYPE_INTEGER, 0, 9, 1, 0, {}, 0}};
   CameraSource before({}, camera);
-  open(before, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(before).has_value());
+  stream(before, camera);
   before.controls()->set("brightness", "7");
-  camera.state().plugged = false;
   camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false, ""}};
-  camera.break_off(ENODEV);
+  camera.unplug();
   CHECK(reaches(before, CameraState::kLost));
 
   CameraParameters parameters;
@@ -246,8 +234,7 @@ TEST_CASE(
     source.next();
   }
   CHECK(camera.state().opens == opens);
-  camera.state().plugged = true;
-  camera.state().error = 0;
+  camera.plug();
   camera.state().controls[0].value = 1;
   open(source, camera);
   CHECK(camera.state().controls[0].value == 7);
@@ -264,15 +251,13 @@ TEST_CASE("a camera that went before its first frame may be replaced by another"
   FakeCamera camera;
   CameraSource source({}, camera);
   open(source, camera);
-  camera.state().plugged = false;
-  camera.break_off(ENODEV);
+  camera.unplug();
   REQUIRE(wait_for_descriptor(source.descriptor(), kTimeoutMs));
   CHECK_FALSE(source.next().has_value());
   CHECK(source.identity().empty());
   camera.state().others = {{"/dev/video2", {}, "Fake", "usb-2", "B", "fake", false, ""}};
   camera.state().listed = false;
-  camera.state().plugged = true;  // the fake opens its one device for all nodes
-  camera.state().error = 0;
+  camera.plug();  // the fake opens its one device for all nodes
   open(source, camera);
   camera.deliver({.sequence = 0});
   CHECK(wait_for_frame(source).has_value());
@@ -342,9 +327,7 @@ TEST_CASE("a silent camera is lost when its time is over") {
   CameraParameters parameters;
   parameters.timeout_s = 0.05;
   CameraSource source(parameters, camera);
-  open(source, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(source).has_value());
+  stream(source, camera);
   CHECK(reaches(source, CameraState::kLost));
   CHECK(camera.state().starts == 1);
   open(source, camera);  // and started again

@@ -2,6 +2,7 @@
 
 #include <linux/videodev2.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -38,6 +39,14 @@ class FakeCamera final : public CameraSystem {
   };
   void deliver(const Delivery& delivery);
   void break_off(int error);  // whatever is asked of the stream from now on fails
+  void unplug() {
+    state_->plugged = false;
+    break_off(ENODEV);
+  }
+  void plug() {  // in again
+    state_->plugged = true;
+    state_->error = 0;
+  }
 
   struct FakeControl {
     std::uint32_t id = 0;

@@ -59,9 +59,7 @@ TEST_CASE("of several planes, data that begins behind its end is damaged") {
 TEST_CASE("a buffer that is returned twice breaks the stream") {
   FakeCamera camera;
   CameraSource source({}, camera);
-  open(source, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(source).has_value());
+  stream(source, camera);
   camera.deliver({.index = 1, .sequence = 1});
   camera.deliver({.index = 1, .sequence = 2});
   CHECK(reaches(source, CameraState::kLost));
@@ -105,9 +103,7 @@ TEST_CASE("a camera that only gives damaged frames is lost") {
   CameraParameters parameters;
   parameters.timeout_s = 0.05;
   CameraSource source(parameters, camera);
-  open(source, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(source).has_value());
+  stream(source, camera);
   camera.deliver({.flags = V4L2_BUF_FLAG_ERROR, .sequence = 1});
   camera.deliver({.bytes_used = 1, .sequence = 2});
   CHECK(reaches(source, CameraState::kLost));
@@ -119,9 +115,7 @@ TEST_CASE("whatever error a driver has for its frames, it is lost and tried agai
     CAPTURE(error);
     FakeCamera camera;
     CameraSource source({}, camera);
-    open(source, camera);
-    camera.deliver({.sequence = 0});
-    REQUIRE(wait_for_frame(source).has_value());
+    stream(source, camera);
     camera.break_off(error);
     CHECK(reaches(source, CameraState::kLost));
     camera.state().error = 0;
@@ -170,16 +164,12 @@ TEST_CASE("a driver that sets something else than it was asked for is refused") 
 TEST_CASE("a camera that comes back with other frames is read as it is now") {
   FakeCamera camera;
   CameraSource source({}, camera);
-  open(source, camera);
-  camera.deliver({.sequence = 0});
-  REQUIRE(wait_for_frame(source).has_value());
-  camera.state().plugged = false;
-  camera.break_off(ENODEV);
+  stream(source, camera);
+  camera.unplug();
   CHECK(reaches(source, CameraState::kLost));
 
   FakeCamera::State& state = camera.state();
-  state.plugged = true;
-  state.error = 0;
+  camera.plug();
   state.formats = {V4L2_PIX_FMT_YUYV};
   state.width = 32;
   state.height = 24;
