@@ -23,4 +23,11 @@ struct EdgeNoise {
 PoseCovariance pose_covariance(const Pose& pose, double radius_m, const CameraModel& camera,
                                const EdgeNoise& noise);
 
+// What a pose's covariance lacks when the parts of its marker disagree about it by more than noise
+// lets them: shadows, glare, something over the outline, a motion that is no straight line. Both as
+// worked out of the same residuals: taken part by part, and pixel by pixel. Nothing when the parts
+// agree.
+PoseCovariance disagreement_beyond_noise(const PoseCovariance& by_parts,
+                                         const PoseCovariance& by_noise);
+
 }  // namespace roundel

@@ -279,6 +279,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
   plan.rough_steps = 0;
   plan.min_steps = 1;
   plan.max_steps = 5;
+  plan.weigh_parts = true;
   for (std::size_t i = 0; i < 2; ++i) {
     Candidate& candidate = candidates[i];
     auto& fitted = candidate.fitted;
@@ -293,6 +294,7 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
     if (fitted) {
       hypothesis.pose = fitted->state.pose;
       hypothesis.covariance = fitted->covariance;
+      hypothesis.disagreement = fitted->disagreement;
       hypothesis.pattern = candidate.pattern;
       hypothesis.state = fitted->state;
       hypothesis.mean_square = fitted->mean_square;

@@ -19,6 +19,7 @@ namespace roundel {
 struct PoseHypothesis {
   Pose pose;
   PoseCovariance covariance = PoseCovariance::Zero();
+  PoseCovariance disagreement = PoseCovariance::Zero();  // its part that no noise explains
   double log_likelihood = 0;              // of what was seen; comparable within a marker
   Pattern pattern;                        // that it was fitted with
   std::optional<PhotometricState> state;  // of the fit, if there was one

@@ -108,7 +108,9 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHyp
   observation.pose_count = 2;
   PoseHypothesis& found = observation.poses[0];
   found.pose = fitted->state.pose;
-  found.covariance = fitted->covariance;
+  // Residuals that are as they were come from parts that disagree as they did.
+  found.disagreement = last.disagreement;
+  found.covariance = fitted->covariance + last.disagreement;
   found.pattern = last.pattern;
   found.state = fitted->state;
   found.mean_square = fitted->mean_square;

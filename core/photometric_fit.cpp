@@ -33,6 +33,9 @@ constexpr double kBoxError = 0.008;
 // Residuals beyond so many deviations lose weight, and all of it (glare, what covers the marker).
 constexpr double kRobust = 3.0, kOutlier = 8.0;
 
+// That the outer rim and what is inside are cut into, each, to see whether they agree.
+constexpr int kParts = 16;
+
 }  // namespace
 
 EdgeLook edge_look(const Pattern& pattern) {
@@ -79,6 +82,8 @@ struct PhotometricFit::Step {
   double mean_square_after = 0;  // to second order
   bool last = false;
   PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes; when last
+  // The same for all unknowns: by how much a pull at one of them moves the pose.
+  Eigen::Matrix<double, kUnknowns, 6> columns = Eigen::Matrix<double, kUnknowns, 6>::Zero();
 };
 
 bool PhotometricFit::load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
@@ -222,6 +227,7 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
     const Eigen::Matrix<double, kCount, 6> columns =
         solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());
     step.inverse = columns.template topRows<6>();
+    step.columns.template topRows<kCount>() = columns;
   }
   return step;
 }
@@ -261,6 +267,32 @@ PoseCovariance PhotometricFit::to_camera_axes(const PhotometricState& state,
   to_camera.topLeftCorner<3, 3>() = radius_m_ * axes;
   to_camera.bottomRightCorner<3, 3>() = axes;
   return to_camera * inverse * to_camera.transpose();
+}
+
+// Covariance of the pose by how much the parts of the marker disagree about it: what each of them
+// pulls at the unknowns, taken to the pose. If pixels erred one by one, that would sum up to the
+// normal matrix's inverse.
+PoseCovariance PhotometricFit::parts_covariance(const PhotometricModel& model, bool inside,
+                                                int unknowns, const Step& step) const {
+  PoseCovariance sum = PoseCovariance::Zero();
+  const auto add = [&](const PixelColumns& all, auto&& add_pixels) {
+    const int blocks = all.count / kPixelBlock;
+    for (int part = 0; part < kParts; ++part) {
+      const int from = blocks * part / kParts, to = blocks * (part + 1) / kParts;
+      if (from == to) continue;
+      const int at = from * kPixelBlock, count = (to - from) * kPixelBlock;
+      PhotometricSums sums;
+      add_pixels(model, PixelColumns{all.x + at, all.y + at, all.grey + at, all.weight + at, count},
+                 unknowns, sums, VectorUnit::kBest);
+      const auto pull =
+          Eigen::Map<const Eigen::Matrix<float, kUnknowns, 1>>(sums.right_side.data());
+      const Eigen::Matrix<double, 6, 1> moved = step.columns.transpose() * pull.cast<double>();
+      sum += moved * moved.transpose();
+    }
+  };
+  add(pixels_.outer(), add_outer_pixels);
+  if (inside) add(pixels_.inner(), add_inner_pixels);
+  return sum;
 }
 
 std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start,
@@ -311,6 +343,13 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.trust = static_cast<double>(sums.weights) * outer.every / result.pixels;
       result.covariance =
           to_camera_axes(state, variance_of(state, step.mean_square_after) * step.inverse);
+      if (plan.weigh_parts) {
+        const PhotometricModel settled = model_of(state, pattern, deviation);
+        result.disagreement = disagreement_beyond_noise(
+            to_camera_axes(state, parts_covariance(settled, inside, unknowns, step)),
+            result.covariance);
+        result.covariance += result.disagreement;
+      }
       return result;
     }
   }

@@ -60,14 +60,17 @@ struct FitPlan {
   int min_steps = 2, max_steps = 6;
   // The last step is one that leaves less than so many standard deviations.
   double settled = 0.03;
+  // The covariance takes in that parts of the marker may disagree: that costs one step more.
+  bool weigh_parts = false;
 };
 
 // A pose fitted to the grey values.
 struct PhotometricPose {
   PhotometricState state;
   PoseCovariance covariance = PoseCovariance::Zero();
-  double mean_square = 0;                     // of the residuals, grey levels squared
-  int pixels = 0;                             // that the fit used
+  PoseCovariance disagreement = PoseCovariance::Zero();  // what of it no noise explains
+  double mean_square = 0;                                // of the residuals, grey levels squared
+  int pixels = 0;                                        // that the fit used
   double outer_square = 0, inner_square = 0;  // the same of the outer rim, and of what is inside
   int inner_pixels = 0;
   double trust = 0;  // share of them that it believed: the rest looks like something else
@@ -115,6 +118,8 @@ class PhotometricFit {
   PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
                             double deviation) const;
   PhotometricState advanced(const PhotometricState& state, const Vector& step) const;
+  PoseCovariance parts_covariance(const PhotometricModel& model, bool inside, int unknowns,
+                                  const Step& step) const;
   PoseCovariance to_camera_axes(const PhotometricState& state, const PoseCovariance& inverse) const;
 
   ResponseCurve response_;

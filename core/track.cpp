@@ -12,9 +12,9 @@ namespace {
 constexpr double kSameNormal = 0.03;
 // Evidence for a pose fades, because tilting changes both hypotheses; and it has an end.
 constexpr double kFading = 0.9, kMaxPoseLogOdds = 20;
-// Readings of the light's slope that one more is averaged with, and what is more than noise of it.
 // Branches meet where so many standard deviations of a normal lie between them.
 constexpr double kMeeting = 3;
+// Readings of the light's slope that one more is averaged with, and what is more than noise of it.
 constexpr int kLightReadings = 4;
 constexpr double kOtherLight = 0.02;  // share a radius
 constexpr double kVelocityGain = 0.5, kChangeGain = 0.3;
