@@ -50,7 +50,11 @@ function(roundel_test name)
   # and take half the time to build.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} doctest::doctest)
-  doctest_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
+  set(timeout 600)
+  if(CMAKE_CROSSCOMPILING)
+    set(timeout 3600)  # an emulator is some twenty times slower
+  endif()
+  doctest_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT ${timeout})
 endfunction()
 
 # Only the sources named get the path of tests/data: it differs between checkouts, and with it what a

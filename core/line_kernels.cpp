@@ -156,7 +156,7 @@ ROUNDEL_LINE_KERNELS(avx512,
 
 }  // namespace
 
-const LineKernels& line_kernels(VectorUnit unit) {
+const LineKernels& line_kernels([[maybe_unused]] VectorUnit unit) {
 #if defined(__x86_64__)
   static const int width = widest_vectors();
   if (unit == VectorUnit::kBest && width >= 512) return k_kernels_avx512;

@@ -199,7 +199,7 @@ ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_AVX512, true, simd::Float16)
 constexpr Kernels kAvx512Kernels{k_avx512, k_avx512_boxed};
 #endif
 
-const Kernels& best_kernels(VectorUnit unit) {
+const Kernels& best_kernels([[maybe_unused]] VectorUnit unit) {
 #if defined(__x86_64__)
   static const int width = widest_vectors();
   if (unit == VectorUnit::kBest && width >= 512) return kAvx512Kernels;

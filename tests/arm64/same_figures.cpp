@@ -63,7 +63,8 @@ PhotometricModel model_of(int halves) {
   model.at = {0.003F, -0.002F, 1.01F};
   model.by_x = {50.0F, 1.5F, 0.4F};
   model.by_y = {-1.3F, 49.0F, -0.3F};
-  model.pixel_slope = {0.001F, 0.00002F, -0.00001F, 0.00098F};
+  model.by_u = {0.05F, 0.001F, 0.0004F};
+  model.by_v = {-0.0003F, 0.048F, -0.0003F};
   model.eye = {4.0F, -3.0F, 49.0F};
   model.dark = 35;
   model.contrast = 180;
