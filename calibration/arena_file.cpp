@@ -43,7 +43,7 @@ std::string list(const Values& values) {
 // One file being read: typed values of keys, and where errors are.
 class Reader {
  public:
-  Reader(YAML::Node node, std::string name) : node_(std::move(node)), name_(std::move(name)) {
+  Reader(const YAML::Node& node, std::string name) : node_(node), name_(std::move(name)) {
     if (!node_.IsMap()) fail(node_, "is not an arena calibration");
   }
 

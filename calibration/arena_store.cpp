@@ -57,7 +57,7 @@ ArenaCalibration ArenaStore::restore() {
     throw std::runtime_error(
         fmt::format("{}: there is no calibration before the one in use", previous_path()));
   }
-  const ArenaCalibration calibration = parse_arena_file(*previous, previous_path());
+  ArenaCalibration calibration = parse_arena_file(*previous, previous_path());
   StagedFile restored(path_, *previous);
   if (const std::optional<std::string> current = worth_keeping(path_)) {
     write_file_atomically(previous_path(), *current);

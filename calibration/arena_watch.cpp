@@ -39,6 +39,7 @@ Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& points) {
 
 bool stands_still(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& middle) {
   std::vector<double> distances;
+  distances.reserve(points.size());
   for (const Eigen::Vector2d& p : points) distances.push_back((p - middle).norm());
   return median(distances) < kStill;
 }

@@ -110,10 +110,13 @@ BundleResult adjust(std::span<const BoardView> views, const BundleState& start,
   double damping = 1e-3;
   for (int step = 0; step < options.max_steps && !result.converged; ++step) {
     if (!equations.assemble(views, result.state, options)) break;
-    for (; damping <= kMostDamping; damping *= 10) {
+    while (damping <= kMostDamping) {
       const auto next = stepped(result.state, equations, options, damping);
       const auto cost = next ? cost_of(views, *next, options) : std::nullopt;
-      if (!cost || !(cost->total() <= result.cost)) continue;
+      if (!cost || !(cost->total() <= result.cost)) {
+        damping *= 10;
+        continue;
+      }
       result.converged = result.cost - cost->total() <= kSettled * result.cost;
       result.state = *next;
       keep_cost(*cost);
@@ -123,8 +126,9 @@ BundleResult adjust(std::span<const BoardView> views, const BundleState& start,
     // No step in any direction helps: a minimum to the last digit.
     if (damping > kMostDamping) result.converged = true;
   }
-  if (equations.assemble(views, result.state, options))
+  if (equations.assemble(views, result.state, options)) {
     tell_certainty(equations, options, views.size(), result);
+  }
   return result;
 }
 

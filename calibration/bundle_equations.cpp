@@ -36,9 +36,10 @@ bool is_estimated(Eigen::Index shared, const BundleOptions& options) {
 
 Eigen::VectorXd prior_weights(const BundleOptions& options) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(shared_count(options));
-  for (Eigen::Index k = kIntrinsicParameters; k < weights.size(); ++k)
+  for (Eigen::Index k = kIntrinsicParameters; k < weights.size(); ++k) {
     weights[k] = std::pow(
         options.residual_sigma / options.offset_sigma_m[(k - kIntrinsicParameters) % 3], 2);
+  }
   return weights;
 }
 
@@ -50,9 +51,10 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> projection_by_shared(const BoardPoint& 
   for (int k = 0; k < kIntrinsicParameters; ++k) {
     if (is_estimated(k, options)) by.col(k) = projection.by_intrinsics.col(k);
   }
-  if (point.id <= options.markers)
+  if (point.id <= options.markers) {
     by.middleCols<3>(kIntrinsicParameters + 3 * (static_cast<Eigen::Index>(point.id) - 1)) =
         projection.by_place;
+  }
   return by;
 }
 

@@ -88,6 +88,7 @@ struct Configuration {
   FilesSettings files;
   CameraSettings camera;
   DetectorParameters detector;  // sections marker and detector
+  int tracking_threads = 1;     // section detector
   MountSettings mount;          // section marker
   ArenaSettings arena;
   ControlSettings control;

@@ -152,6 +152,7 @@ constexpr std::array kFields = {
           1},
     Field{"detector.concentricity_tolerance_px",
           ROUNDEL_TARGET(detector.concentricity_tolerance_px), 0, 100},
+    Field{"detector.threads", ROUNDEL_TARGET(tracking_threads), 1, 16},
     Field{"detector.min_id_probability", ROUNDEL_TARGET(detector.min_id_probability), 0, 1},
 
     Field{"lcm.url", ROUNDEL_TARGET(lcm.url), 1, 1000},

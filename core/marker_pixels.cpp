@@ -6,6 +6,7 @@
 
 #include "core/ellipse_rows.hpp"
 #include "core/marker_geometry.hpp"
+#include "core/rounding.hpp"
 
 namespace roundel {
 
@@ -21,7 +22,8 @@ struct MarkerPixels::Row {
   const std::uint8_t* luma;  // of pixel u = 0
   std::ptrdiff_t pixel_stride;
   double centre_u;
-  float dv;  // of the row, from the marker's middle
+  float dv;   // of the row, from the marker's middle
+  int width;  // pixels
 };
 
 void MarkerPixels::Columns::make_room(int more) {
@@ -43,10 +45,7 @@ void MarkerPixels::Columns::finish(const LensPatch& patch, const ResponseCurve& 
     y[filled] = y[last];
     luma[filled] = luma[last];
   }
-  for (std::size_t i = 0; i < filled; ++i) {
-    grey[i] = response.light(luma[i]);
-    weight[i] = response.slope(luma[i]);
-  }
+  response.undo(luma.data(), filled, grey.data(), weight.data());
   std::fill(weight.begin() + static_cast<std::ptrdiff_t>(count),
             weight.begin() + static_cast<std::ptrdiff_t>(filled), 0.0F);
   remove_lens(patch.cubic(), x.data(), y.data(), static_cast<int>(filled));
@@ -77,7 +76,13 @@ void MarkerPixels::take(const Row& row, int u0, int u1, int stride, Columns& col
   const std::uint8_t* from = row.luma + u0 * row.pixel_stride;
   const std::ptrdiff_t step = stride * row.pixel_stride;
   std::uint8_t* to = columns.luma.data() + start;
-  for (int i = 0; i < count; ++i, from += step) to[i] = *from;
+  constexpr int kChunk = 16;
+  if (step == 1 && u0 + (count + kChunk - 1) / kChunk * kChunk <= row.width) {
+    // By chunks as well, while they stay within the row.
+    for (int i = 0; i < count; i += kChunk) __builtin_memcpy(to + i, from + i, kChunk);
+  } else {
+    for (int i = 0; i < count; ++i, from += step) to[i] = *from;
+  }
   columns.used += count;
 }
 
@@ -93,8 +98,8 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
   middle_ = patch->normalise(0, 0);
   pixel_slope_ = patch->slope();
 
-  const int v0 = std::max(0, static_cast<int>(std::ceil(ellipse.v - half_v)));
-  const int v1 = std::min(frame.height - 1, static_cast<int>(std::floor(ellipse.v + half_v)));
+  const int v0 = std::max(0, ceil_int(ellipse.v - half_v));
+  const int v1 = std::min(frame.height - 1, floor_int(ellipse.v + half_v));
   const double area = std::numbers::pi * a * b;
   const int stride = std::max(1, static_cast<int>(std::lround(std::sqrt(area / kMaxPixels))));
   // Bands around the edges, in shares of the outline's radius.
@@ -108,19 +113,19 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
   const int last_u = frame.width - 1;
   for (int v = v0; v <= v1; v += stride) {
     const double dv = v - ellipse.v;
-    const Row row{frame.row(v), frame.pixel_stride, ellipse.u, static_cast<float>(dv)};
+    const Row row{frame.row(v), frame.pixel_stride, ellipse.u, static_cast<float>(dv), frame.width};
     const auto take_band = [&](double low, double high, Columns& columns) {
       const EllipseRows::Span whole = rows.inside(dv, high);
       if (whole.u1 < whole.u0) return;
-      const int first = std::max(0, static_cast<int>(std::ceil(whole.u0)));
-      const int last = std::min(last_u, static_cast<int>(std::floor(whole.u1)));
+      const int first = std::max(0, ceil_int(whole.u0));
+      const int last = std::min(last_u, floor_int(whole.u1));
       const EllipseRows::Span hole = rows.inside(dv, low);
       if (hole.u1 < hole.u0) {
         take(row, first, last, stride, columns);
         return;
       }
-      const int before = std::min(last, static_cast<int>(std::floor(hole.u0)));
-      const int after = std::max(first, static_cast<int>(std::ceil(hole.u1)));
+      const int before = std::min(last, floor_int(hole.u0));
+      const int after = std::max(first, ceil_int(hole.u1));
       take(row, first, before, stride, columns);
       take(row, std::max(after, before + 1), last, stride, columns);
     };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/ellipse_rows.hpp"
+#include "core/rounding.hpp"
 
 namespace roundel {
 
@@ -91,6 +92,7 @@ void MarkerSearch::begin(const LumaView& frame) {
     stamp_ = 1;
   }
   claims_.clear();
+  given_up_.clear();
   contrast_ = std::max(parameters_.min_contrast,
                        static_cast<int>(std::lround(kNoiseFactor * estimate_noise(frame))));
 }
@@ -105,10 +107,25 @@ bool MarkerSearch::is_owned(int u, int v, Owner owner) const {
   return false;
 }
 
-void MarkerSearch::claim(const Run& run, Owner owner) {
+bool MarkerSearch::is_hopeless(const Seed& seed, const RegionFiller::Limits& limits) const {
+  const RowHead& head = rows_[static_cast<std::size_t>(seed.v)];
+  if (head.stamp != stamp_) return false;
+  for (std::int32_t i = head.first; i >= 0; i = claims_[static_cast<std::size_t>(i)].next_in_row) {
+    const Claim& claim = claims_[static_cast<std::size_t>(i)];
+    if (claim.owner != Owner::kTooLarge || seed.u < claim.u0 || seed.u > claim.u1) continue;
+    const GivenUp& fill = given_up_[static_cast<std::size_t>(claim.fill)];
+    if (seed.threshold >= fill.threshold && limits.max_width <= fill.limits.max_width &&
+        limits.max_height <= fill.limits.max_height) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void MarkerSearch::claim(const Run& run, Owner owner, std::int32_t fill) {
   RowHead& head = rows_[static_cast<std::size_t>(run.v)];
   if (head.stamp != stamp_) head = {stamp_, -1};
-  claims_.push_back({run.u0, run.u1, head.first, owner});
+  claims_.push_back({run.u0, run.u1, head.first, owner, fill});
   head.first = static_cast<std::int32_t>(claims_.size() - 1);
 }
 
@@ -119,13 +136,12 @@ void MarkerSearch::claim_segment() {
 void MarkerSearch::claim(const Ellipse& outline, int frame_height) {
   const EllipseRows rows(outline);
   const double reach = rows.half_height();
-  const int first = std::max(0, static_cast<int>(std::ceil(outline.v - reach)));
-  const int last = std::min(frame_height - 1, static_cast<int>(std::floor(outline.v + reach)));
+  const int first = std::max(0, ceil_int(outline.v - reach));
+  const int last = std::min(frame_height - 1, floor_int(outline.v + reach));
   for (int v = first; v <= last; ++v) {
     const EllipseRows::Span span = rows.inside(v - outline.v, 1);
     if (span.u1 < span.u0) continue;
-    claim({v, static_cast<int>(std::floor(span.u0)), static_cast<int>(std::ceil(span.u1))},
-          Owner::kMarker);
+    claim({v, floor_int(span.u0), ceil_int(span.u1)}, Owner::kMarker);
   }
 }
 
@@ -157,12 +173,17 @@ void MarkerSearch::search(const LumaView& frame, const Box& area, int spacing, s
       if (column == 0) continue;
       const RegionFiller::Limits limits{static_cast<int>(kMaxBoxToChord * seed.extent) + 4,
                                         static_cast<int>(kMaxBoxToChord * column) + 4};
+      if (is_hopeless(seed, limits)) continue;
       const Verdict verdict = examine(frame, seed.u, v, seed.threshold, limits);
       if (verdict == Verdict::kAccepted) {
         found.push_back(finder_.segment());
-      } else if (verdict != Verdict::kTooLarge && verdict != Verdict::kKnown) {
-        // Another row would lead to the same region; one too large for this row's limits may be
-        // right for another's.
+      } else if (verdict == Verdict::kTooLarge) {
+        // Too large for this row's limits; it may be right for another's.
+        const auto fill = static_cast<std::int32_t>(given_up_.size());
+        given_up_.push_back({seed.threshold, limits});
+        finder_.for_each_run([&](const Run& run) { claim(run, Owner::kTooLarge, fill); });
+      } else if (verdict != Verdict::kKnown) {
+        // Another row would lead to the same region.
         finder_.for_each_run([&](const Run& run) { claim(run, Owner::kNoMarker); });
       }
     }

@@ -42,11 +42,18 @@ class MarkerSearch {
 
  private:
   // Pixels u0 ... u1 of a row that belong to something known: a marker, with all that lies inside
-  // of it, or the dark part of what turned out to be none.
-  enum class Owner : std::int32_t { kMarker, kNoMarker };
+  // of it, the dark part of what turned out to be none, or of what grew beyond a seed's limits.
+  enum class Owner : std::int32_t { kMarker, kNoMarker, kTooLarge };
   struct Claim {
     std::int32_t u0, u1, next_in_row;
     Owner owner;
+    std::int32_t fill;  // of kTooLarge: which of the fills given up
+  };
+  // A fill that was given up. Another one in the same region, of a threshold not below and limits
+  // not above, would end likewise.
+  struct GivenUp {
+    int threshold;
+    RegionFiller::Limits limits;
   };
   struct RowHead {
     std::uint32_t stamp = 0;
@@ -54,7 +61,8 @@ class MarkerSearch {
   };
 
   void claim_segment();
-  void claim(const Run& run, Owner owner);
+  void claim(const Run& run, Owner owner, std::int32_t fill = -1);
+  bool is_hopeless(const Seed& seed, const RegionFiller::Limits& limits) const;
   bool is_owned(int u, int v, Owner owner) const;
 
   DetectorParameters parameters_;
@@ -63,6 +71,7 @@ class MarkerSearch {
   RowScanner scanner_;
   SegmentFinder finder_;
   std::vector<Claim> claims_;
+  std::vector<GivenUp> given_up_;
   std::vector<RowHead> rows_;
   std::uint32_t stamp_ = 0;
 };

@@ -392,6 +392,7 @@ bool Observer::settle_curve() {
   exponent_ = curve_evidence_.exponent();
   response_ = exponent_ == 1 ? ResponseCurve::linear() : ResponseCurve::like_srgb(exponent_);
   fit_.set_response(response_);
+  for (PhotometricFit& fit : more_fits_) fit.set_response(response_);
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/camera_model.hpp"
 #include "core/code_reader.hpp"
@@ -62,9 +63,12 @@ class Observer {
 
   // The marker of a track that is sure of its id and its pose: a single fit from where the last
   // observation leads to expect it, with nothing read or weighed anew. Nothing when the picture
-  // does not bear it out.
+  // does not bear it out. Several workers, by their numbers, may do so at a time.
   std::optional<Observation> follow(const LumaView& frame, const PoseHypothesis& last,
-                                    const Expectation& expected);
+                                    const Expectation& expected, int worker = 0);
+
+  // From now on follow() may be called by so many workers; never by less than before.
+  void make_room_for(int workers);
 
   // Moves a pose aside by as much as its outline moved. False where the lens model ends.
   bool move(Pose& pose, const Ellipse& from, const Ellipse& to) const;
@@ -100,6 +104,7 @@ class Observer {
   double exponent_ = 1;               // of it, where it was not given
   CurveEvidence curve_evidence_;
   PhotometricFit fit_;
+  std::vector<PhotometricFit> more_fits_;  // of workers other than 0
 };
 
 }  // namespace roundel

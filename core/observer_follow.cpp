@@ -44,6 +44,10 @@ std::optional<Ellipse> Observer::outline(const Pose& pose) const {
   return camera_ ? outline_of(pose, parameters_.diameter_m / 2, *camera_) : std::nullopt;
 }
 
+void Observer::make_room_for(int workers) {
+  while (std::ssize(more_fits_) + 1 < workers) more_fits_.emplace_back(response_);
+}
+
 bool Observer::move(Pose& pose, const Ellipse& from, const Ellipse& to) const {
   const auto before = camera_->normalise({from.u, from.v});
   const auto now = camera_->normalise({to.u, to.v});
@@ -53,7 +57,8 @@ bool Observer::move(Pose& pose, const Ellipse& from, const Ellipse& to) const {
 }
 
 std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHypothesis& last,
-                                            const Expectation& expected) {
+                                            const Expectation& expected, int worker) {
+  PhotometricFit& fit = worker == 0 ? fit_ : more_fits_[static_cast<std::size_t>(worker) - 1];
   PhotometricState start = *last.state;
   start.pose = expected.pose;
   // The light's slope stays where it is while the marker turns beneath it.
@@ -66,9 +71,9 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHyp
   InnerEdges inner;
   if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
   const double radius_m = parameters_.diameter_m / 2;
-  if (!fit_.load(frame, *camera_, expected.ellipse, radius_m, reach, inner)) return std::nullopt;
+  if (!fit.load(frame, *camera_, expected.ellipse, radius_m, reach, inner)) return std::nullopt;
   PhotometricState lit = start;
-  fit_.set_levels(expected.levels, lit);
+  fit.set_levels(expected.levels, lit);
   if (std::abs(lit.contrast - start.contrast) + std::abs(lit.dark - start.dark) >
       kSameLight * start.contrast) {
     start = lit;
@@ -88,7 +93,7 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHyp
   plan.rough_every = 4;
   plan.settled = kSettled;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * expected.levels.contrast();
-  const auto fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);
+  const auto fitted = fit.fit(start, last.pattern, edge_look(last.pattern), plan);
   if (!fitted || fitted->trust < kMinTrust) return std::nullopt;
   const double floor = kModelError * expected.levels.contrast();
   if (fitted->mean_square > kMaxGrowth * (last.mean_square + floor * floor)) return std::nullopt;

@@ -19,7 +19,9 @@ void ResponseCurve::fill_slopes() {
 }
 
 ResponseCurve ResponseCurve::linear() {
-  return power(1);
+  ResponseCurve curve = power(1);
+  curve.linear_ = true;
+  return curve;
 }
 
 ResponseCurve ResponseCurve::srgb() {
@@ -66,6 +68,19 @@ std::optional<ResponseCurve> ResponseCurve::named(std::string_view name) {
   const bool whole = error == std::errc() && end == name.data() + name.size();
   if (!whole || !(gamma >= kMinGamma && gamma <= kMaxGamma)) return std::nullopt;
   return power(gamma);
+}
+
+void ResponseCurve::undo(const std::uint8_t* grey, std::size_t count, float* light,
+                         float* slopes) const {
+  if (linear_) {  // without look-ups: mostly no curve is known
+    for (std::size_t i = 0; i < count; ++i) light[i] = grey[i];
+    std::fill(slopes, slopes + count, 1.0F);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    light[i] = light_[grey[i]];
+    slopes[i] = slope_[grey[i]];
+  }
 }
 
 double ResponseCurve::light(double grey) const {

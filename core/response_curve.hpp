@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -29,6 +30,9 @@ class ResponseCurve {
   float light(std::uint8_t grey) const { return light_[grey]; }
   double light(double grey) const;
 
+  // The light of many pixels, and slope() of each.
+  void undo(const std::uint8_t* grey, std::size_t count, float* light, float* slopes) const;
+
   // Grey levels a unit of light around a grey level: noise of even grey levels is uneven in light.
   float slope(std::uint8_t grey) const { return slope_[grey]; }
 
@@ -37,6 +41,7 @@ class ResponseCurve {
   void fill_slopes();
 
   std::array<float, 256> light_{}, slope_{};
+  bool linear_ = false;
 };
 
 }  // namespace roundel

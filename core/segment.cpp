@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/rounding.hpp"
+
 namespace roundel {
 
 namespace {
@@ -55,7 +57,7 @@ std::optional<Levels> measure_levels(const LumaView& frame, const Ellipse& ellip
   const auto sample = [&](double along_a, double along_b, auto& list, std::size_t& count) {
     const double u = ellipse.u + along_a * axes.cos_angle - along_b * axes.sin_angle;
     const double v = ellipse.v + along_a * axes.sin_angle + along_b * axes.cos_angle;
-    const int pu = static_cast<int>(std::lround(u)), pv = static_cast<int>(std::lround(v));
+    const int pu = nearest_int(u), pv = nearest_int(v);
     if (frame.contains(pu, pv)) list[count++] = frame.at(pu, pv);
   };
   const double margin_a = std::max(kMarginRadius * ellipse.a, ellipse.a + kMinMarginGap);

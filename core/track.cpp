@@ -13,6 +13,8 @@ constexpr double kSameNormal = 0.03;
 // Evidence for a pose fades, because tilting changes both hypotheses; and it has an end.
 constexpr double kFading = 0.9, kMaxPoseLogOdds = 20;
 // Readings of the light's slope that one more is averaged with, and what is more than noise of it.
+// Branches meet where so many standard deviations of a normal lie between them.
+constexpr double kMeeting = 3;
 constexpr int kLightReadings = 4;
 constexpr double kOtherLight = 0.02;  // share a radius
 constexpr double kVelocityGain = 0.5, kChangeGain = 0.3;
@@ -24,6 +26,13 @@ constexpr double kMaxTurn = 0.3;
 Eigen::Vector3d turn_between(const Pose& before, const Pose& after) {
   const Eigen::AngleAxisd turn(after.orientation * before.orientation.conjugate());
   return std::remainder(turn.angle(), 2 * std::numbers::pi) * turn.axis();
+}
+
+// How uncertain the direction of a pose's normal is, radians.
+double normal_sigma(const PoseHypothesis& hypothesis) {
+  const Eigen::Matrix3d turns = hypothesis.covariance.bottomRightCorner<3, 3>();
+  const Eigen::Vector3d normal = hypothesis.pose.normal();
+  return std::sqrt(std::max(0.0, turns.trace() - normal.dot(turns * normal)));
 }
 
 }  // namespace
@@ -45,11 +54,14 @@ Pose Track::predicted_pose() const {
   return pose;
 }
 
-bool Track::settled(int id_count) const {
+bool Track::is_sure_of_pose() const {
+  return pose_log_odds >= kSurePose || poses_agree;
+}
+
+bool Track::is_sure_of_name(int id_count) const {
   if (missed != 0 || observation.pose_count == 0 || implausible > 0) return false;
   const PoseHypothesis& pose = observation.poses[static_cast<std::size_t>(pose_index)];
   if (!pose.state || pose.pattern.kind == Pattern::Kind::kUnknown) return false;
-  if (pose_log_odds < kSurePose && !poses_agree) return false;
   if (pose.pattern.kind == Pattern::Kind::kPlain) return true;
   const IdEvidence::Name name = evidence.best(id_count);
   return name.id == observation.id && name.probability >= kSureName;
@@ -58,16 +70,13 @@ bool Track::settled(int id_count) const {
 void Track::update(const Observation& seen_now, int id_count) {
   const Eigen::Vector2d moved(seen_now.segment.ellipse.u - ellipse.u,
                               seen_now.segment.ellipse.v - ellipse.v);
-  if (observation.segment.threshold != 0) {  // not the first frame
-    velocity += kVelocityGain * (moved / frames_since_seen() - velocity);
-  }
+  velocity += kVelocityGain * (moved / frames_since_seen() - velocity);
   std::optional<Pose> pose_before;
   if (missed <= 1 && observation.pose_count > 0) {
     pose_before = observation.poses[static_cast<std::size_t>(pose_index)].pose;
   }
   observation = seen_now;
   ellipse = seen_now.segment.ellipse;
-  threshold = seen_now.segment.threshold;
   missed = 0;
   seen = true;
   // The name that is known already can't be read off anything but the marker, whatever shadows do
@@ -116,12 +125,17 @@ void Track::smooth_light(const Observation& seen_now) {
 
 // Which of an observation's poses continues the track, by the evidence of this and earlier frames.
 void Track::weigh_poses(const Observation& seen_now) {
+  const auto normal_of = [&](std::size_t i) { return seen_now.poses[i].pose.normal(); };
   if (seen_now.followed) {
     pose_index = 0;
-    normal = seen_now.poses[0].pose.normal();
+    normal = normal_of(0);
+    // Where both branches meet, one may leave by the other's side: what was known is forgotten.
+    const double between = (normal - normal_of(1)).norm();
+    poses_agree = between < kSameNormal;
+    if (between < kSameNormal + kMeeting * normal_sigma(seen_now.poses[0])) pose_log_odds = 0;
     return;
   }
-  const auto normal_of = [&](std::size_t i) { return seen_now.poses[i].pose.normal(); };
+  ++weighings;
   const double first_over_second =
       seen_now.poses[0].log_likelihood - seen_now.poses[1].log_likelihood;
   const double between = (normal_of(0) - normal_of(1)).norm();

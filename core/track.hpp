@@ -11,9 +11,8 @@ namespace roundel {
 
 // A marker that is followed from frame to frame.
 struct Track {
-  std::int64_t number = 0;  // from 1, never used twice
-  Ellipse ellipse;          // where it was seen last
-  int threshold = 0;
+  std::int64_t number = 0;                             // from 1, never used twice
+  Ellipse ellipse;                                     // where it was seen last
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  // pixels a frame
   int missed = 0;       // frames since it was seen; 0: seen in this frame
   int implausible = 0;  // frames in a row in which it did not look like a marker inside
@@ -21,6 +20,7 @@ struct Track {
 
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of the pose published last; zero before
   double pose_log_odds = 0;  // for the branch that `normal` belongs to, over the other one
+  int weighings = 0;         // frames in which both branches were compared
   bool poses_agree = false;  // both branches were the same when they were last compared
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();    // a frame, rotation vector in camera axes
   Eigen::Vector3d step = Eigen::Vector3d::Zero();    // a frame, metres in camera axes
@@ -38,8 +38,10 @@ struct Track {
   Pose predicted_pose() const;
   int frames_since_seen() const { return missed > 1 ? missed : 1; }
 
-  // Whether id and pose are beyond doubt, so that nothing needs to be read and weighed anew.
-  bool settled(int id_count) const;
+  // Whether id, or that it has none, is beyond doubt, so that nothing needs to be read anew.
+  bool is_sure_of_name(int id_count) const;
+  // The same of which of the two poses is the right one.
+  bool is_sure_of_pose() const;
 
   // Takes over this frame's observation: place, motion, evidence for the id and for one of the
   // poses.

@@ -18,6 +18,9 @@ constexpr int kNewcomerFrames = 5;   // a full search is spread over as many fra
 // How often a settled track is read and weighed anew, and how often the slope of the light and the
 // blur by motion, which change slowly, are fitted along; frames.
 constexpr int kReadingInterval = 64, kLightInterval = 8;
+// Where the evidence leaves the pose undecided, it is weighed in every frame at first, then every
+// few.
+constexpr int kFirstWeighings = 16, kWeighingInterval = 4;
 // What moves as it moved before is followed without a look at its outline; pixels.
 constexpr double kMaxSurprise = 0.6;
 // And so close to the expected place the first step of the fit is mostly the last one.
@@ -26,6 +29,7 @@ constexpr double kLocalReach = 2.0;  // of the search around an expected place, 
 constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
 constexpr double kSameSize = 1.6;    // ratio of sizes of one marker in neighbouring frames
 constexpr double kSureReading = 0.99;
+constexpr std::size_t kWorthSharing = 8;  // tracks: waking a thread takes as long as a fit or two
 
 double mean_radius(const Ellipse& e) {
   return std::sqrt(e.a * e.b);
@@ -50,8 +54,8 @@ double distance_px(const Pose& from, const Pose& to, double radius_m, double rad
   return (aside + 2 * std::abs(turn.z())) * radius_px;
 }
 
-// The camera's driver has just written the picture, mostly not into this processor's cache: what the
-// next marker needs may be on its way while this one is worked on.
+// The camera's driver has just written the picture, mostly not into this processor's cache: what
+// the next marker needs may be on its way while this one is worked on.
 void prefetch(const LumaView& frame, const Ellipse& e) {
   constexpr std::ptrdiff_t kLine = 64;  // bytes
   const int reach = static_cast<int>(1.2 * e.a) + 1;
@@ -79,6 +83,12 @@ bool inside(const Ellipse& e, const LumaView& frame) {
 
 }  // namespace
 
+// To find a marker where its motion leads, before others' claims are looked at.
+struct Attempt {
+  Ellipse expected;
+  std::optional<Observation> seen;
+};
+
 struct Tracker::Impl {
   Impl(const DetectorParameters& p, const std::optional<CameraModel>& camera)
       : parameters(p), search(p), observer(p, camera) {
@@ -86,14 +96,17 @@ struct Tracker::Impl {
     tracks.reserve(usual);
     found.reserve(usual);
     markers.reserve(usual);
+    attempts.resize(1);
   }
 
   void follow_tracks(const LumaView& frame);
   bool only_fitted(const Track& track) const;
   bool in_new_light(const Track& track) const;
   std::optional<Observation> fit(const LumaView& frame, const Track& track,
-                                 const Expectation& expected);
-  std::optional<Observation> follow_closely(const LumaView& frame, const Track& track);
+                                 const Expectation& expected, int worker = 0);
+  Attempt follow_closely(const LumaView& frame, const Track& track, int worker);
+  bool follow_side_by_side(const LumaView& frame);
+  bool accept(const Attempt& attempt, const LumaView& frame);
   void search_for_lost(const LumaView& frame);
   bool follow(const LumaView& frame, const Track& track);
   Observation observe(const LumaView& frame, const Track& track);
@@ -110,6 +123,8 @@ struct Tracker::Impl {
   std::vector<Track> tracks;  // by rising number
   std::vector<Segment> found;
   std::vector<Marker> markers;
+  std::vector<Attempt> attempts;  // of all tracks where work is shared, else of one at a time
+  std::shared_ptr<Workers> workers;
   std::int64_t next_number = 1;
   std::int64_t frames = 0;
   int band = 0;  // the part of the image searched for newcomers in this frame
@@ -156,8 +171,13 @@ void Tracker::Impl::search_nearby(const LumaView& frame, const Track& track) {
 
 // Whether a track only has to be fitted, not read and weighed anew; which it is from time to time.
 bool Tracker::Impl::only_fitted(const Track& track) const {
-  const bool its_turn = (frames + track.number) % kReadingInterval == 0;
-  return !its_turn && track.settled(observer.id_count());
+  if (!track.is_sure_of_name(observer.id_count())) return false;
+  int interval = kReadingInterval;
+  if (!track.is_sure_of_pose()) {
+    if (track.weighings < kFirstWeighings) return false;
+    interval = kWeighingInterval;
+  }
+  return (frames + track.number) % interval != 0;
 }
 
 bool Tracker::Impl::in_new_light(const Track& track) const {
@@ -166,9 +186,9 @@ bool Tracker::Impl::in_new_light(const Track& track) const {
 
 // What a fit does not tell anew it takes from the track.
 std::optional<Observation> Tracker::Impl::fit(const LumaView& frame, const Track& track,
-                                              const Expectation& expected) {
+                                              const Expectation& expected, int worker) {
   const auto& last = track.observation.poses[static_cast<std::size_t>(track.pose_index)];
-  auto followed = observer.follow(frame, last, expected);
+  auto followed = observer.follow(frame, last, expected, worker);
   if (followed) {
     followed->surprise_px = distance_px(track.predicted_pose(), followed->poses[0].pose,
                                         parameters.diameter_m / 2, expected.ellipse.a);
@@ -179,27 +199,57 @@ std::optional<Observation> Tracker::Impl::fit(const LumaView& frame, const Track
 }
 
 // A marker that moves as it did before is fitted where that leads, without a look for its outline.
-std::optional<Observation> Tracker::Impl::follow_closely(const LumaView& frame,
-                                                         const Track& track) {
-  if (!(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return std::nullopt;
+Attempt Tracker::Impl::follow_closely(const LumaView& frame, const Track& track, int worker) {
+  if (track.missed != 0 || !(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return {};
   Expectation expected;
   expected.pose = track.predicted_pose();
   const auto outline = observer.outline(expected.pose);
-  if (!outline || !inside(*outline, frame)) return std::nullopt;
-  if (search.is_claimed(static_cast<int>(outline->u), static_cast<int>(outline->v))) {
-    return std::nullopt;
-  }
+  if (!outline || !inside(*outline, frame)) return {};
   const auto levels = measure_levels(frame, *outline, parameters.min_contrast);
-  if (!levels) return std::nullopt;
+  if (!levels) return {};
   expected.ellipse = *outline;
   expected.levels = *levels;
   expected.in_new_light = in_new_light(track);
   expected.close = track.surprise_px < kClose;
-  auto followed = fit(frame, track, expected);
-  if (!followed || followed->surprise_px > kMaxSurprise) return std::nullopt;
-  followed->segment.ellipse = observer.outline(followed->poses[0].pose).value_or(*outline);
-  search.claim(followed->segment.ellipse, frame.height);
-  return followed;
+  Attempt attempt{*outline, fit(frame, track, expected, worker)};
+  if (attempt.seen && attempt.seen->surprise_px > kMaxSurprise) attempt.seen.reset();
+  if (attempt.seen) {
+    attempt.seen->segment.ellipse =
+        observer.outline(attempt.seen->poses[0].pose).value_or(*outline);
+  }
+  return attempt;
+}
+
+// Two tracks never see one marker.
+bool Tracker::Impl::accept(const Attempt& attempt, const LumaView& frame) {
+  const Ellipse& expected = attempt.expected;
+  if (!attempt.seen ||
+      search.is_claimed(static_cast<int>(expected.u), static_cast<int>(expected.v))) {
+    return false;
+  }
+  search.claim(attempt.seen->segment.ellipse, frame.height);
+  return true;
+}
+
+// Makes all attempts by all workers, each by itself: what they find does not depend on who does it.
+// False where there are too few to be worth it.
+bool Tracker::Impl::follow_side_by_side(const LumaView& frame) {
+  if (!workers || tracks.size() < kWorthSharing) return false;
+  attempts.resize(tracks.size());
+  struct Job {
+    Impl* self;
+    const LumaView* frame;
+  } job{this, &frame};
+  workers->run(
+      [](void* context, int worker) {
+        const auto [self, picture] = *static_cast<const Job*>(context);
+        const auto stride = static_cast<std::size_t>(self->workers->count());
+        for (auto i = static_cast<std::size_t>(worker); i < self->tracks.size(); i += stride) {
+          self->attempts[i] = self->follow_closely(*picture, self->tracks[i], worker);
+        }
+      },
+      &job);
+  return true;
 }
 
 Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
@@ -219,13 +269,15 @@ Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
 }
 
 void Tracker::Impl::follow_tracks(const LumaView& frame) {
+  const bool shared = follow_side_by_side(frame);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     Track& track = tracks[i];
-    if (i + 1 < tracks.size()) prefetch(frame, tracks[i + 1].predicted());
+    if (!shared && i + 1 < tracks.size()) prefetch(frame, tracks[i + 1].predicted());
     track.seen = false;
     if (track.missed != 0) continue;
-    if (const auto followed = follow_closely(frame, track)) {
-      track.update(*followed, observer.id_count());
+    if (!shared) attempts.front() = follow_closely(frame, track, 0);
+    if (const Attempt& attempt = attempts[shared ? i : 0]; accept(attempt, frame)) {
+      track.update(*attempt.seen, observer.id_count());
     } else if (follow(frame, track)) {
       track.update(observe(frame, track), observer.id_count());
     }
@@ -366,6 +418,12 @@ std::span<const Marker> Tracker::track(const LumaView& frame) {
   self.publish();
   self.observer.settle_curve();  // from the next frame on
   return self.markers;
+}
+
+void Tracker::share_work(std::shared_ptr<Workers> workers) {
+  impl_->workers = std::move(workers);
+  if (impl_->workers) impl_->observer.make_room_for(impl_->workers->count());
+  impl_->attempts.reserve(impl_->workers ? impl_->tracks.capacity() : 1);
 }
 
 void Tracker::time_stages(StageStopwatch::Clock clock) {

@@ -9,6 +9,7 @@
 #include "core/luma_view.hpp"
 #include "core/marker.hpp"
 #include "core/stage_times.hpp"
+#include "core/workers.hpp"
 
 namespace roundel {
 
@@ -28,6 +29,9 @@ class Tracker {
   // Markers seen in this frame, by track number. The span holds until the next call.
   // The camera's resolution must be that of the frame, otherwise std::invalid_argument.
   std::span<const Marker> track(const LumaView& frame);
+
+  // From now on many markers are followed by all these workers; what is found is the same.
+  void share_work(std::shared_ptr<Workers> workers);
 
   // From now on the stages of every frame are timed by this clock; null: not at all.
   void time_stages(StageStopwatch::Clock clock);

@@ -263,6 +263,11 @@ void Daemon::publish_status() {
   information_.camera = parts_.source->state();
 
   statistics_.report(current, status_);
+  const int most_markers = parts_.configuration.values.detector.max_markers;
+  if (status_.markers >= most_markers && !std::exchange(told_of_most_markers_, true)) {
+    log_warning("{} markers are in view: detector.max_markers lets no more be reported",
+                status_.markers);
+  }
   status_.session = information_.session;
   status_.utime = current.wall_us;
   status_.mono = current.mono_us;
@@ -297,7 +302,7 @@ void Daemon::start(Parts parts) {
   information_.calibration = parts_.camera ? CalibrationState::kValid : CalibrationState::kNone;
   information_.clock = clock_state();
   information_.simulated = parts_.source->simulated();
-  told_of_other_resolution_ = false;
+  told_of_other_resolution_ = told_of_most_markers_ = false;
   status_.camera = parts_.configuration.values.camera.name;
   status_.source = parts_.source->description();
   status_.url = parts_.configuration.values.lcm.url;

@@ -82,7 +82,7 @@ class Daemon final : private LoopControl {
   DropCounts drops_before_session_;
   DropCounts withheld_;  // tracked, but too old by then; of this session
   std::int64_t unsent_before_session_ = 0;
-  bool told_of_other_resolution_ = false;
+  bool told_of_other_resolution_ = false, told_of_most_markers_ = false;
   bool summary_due_ = false;
   bool frame_carried_ = false;  // since the service manager was told
 

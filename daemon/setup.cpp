@@ -5,12 +5,15 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
+#include <system_error>
 
 #include "calibration/camera_file.hpp"
 #include "daemon/capture/camera_source.hpp"
 #include "daemon/files_source.hpp"
 #include "daemon/simulator_source.hpp"
+#include "daemon/worker_pool.hpp"
 #include "transport/clock.hpp"
 #include "transport/lcm_url.hpp"
 
@@ -116,7 +119,14 @@ Tracker make_tracker(const LoadedConfiguration& configuration,
   try {
     Tracker tracker(configuration.values.detector, camera);
     tracker.time_stages(monotonic_ns);
+    if (configuration.values.tracking_threads > 1) {
+      tracker.share_work(std::make_shared<WorkerPool>(configuration.values.tracking_threads));
+    }
     return tracker;
+  } catch (const std::system_error& error) {
+    throw configuration.error("detector.threads", fmt::format("{} threads can't be started: {}",
+                                                              configuration.values.tracking_threads,
+                                                              error.code().message()));
   } catch (const std::invalid_argument& error) {
     throw configuration.error("detector", error.what());
   }

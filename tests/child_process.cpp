@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <fstream>
 #include <stdexcept>
 
 namespace roundel {
@@ -55,6 +56,16 @@ ChildProcess::~ChildProcess() {
 
 void ChildProcess::signal(int number) const {
   ::kill(pid_, number);
+}
+
+long ChildProcess::memory_kb(const std::string& line) const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  std::string word;
+  long kb = 0;
+  while (status >> word) {
+    if (word == line) status >> kb;
+  }
+  return kb;
 }
 
 bool ChildProcess::read_more(Clock::time_point deadline) {

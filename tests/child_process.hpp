@@ -19,6 +19,8 @@ class ChildProcess {
 
   int pid() const { return pid_; }
   void signal(int number) const;
+  // A line of /proc/PID/status, "VmRSS:" for instance; 0 if it has ended.
+  long memory_kb(const std::string& line) const;
 
   // Waits until the program has written the text (to either stream) after what was waited for
   // before. False if the time is over or the program has ended without it.

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cstdint>
+
 #include <stdexcept>
 
 using namespace roundel;  // NOLINT(google-build-using-namespace)
@@ -21,6 +24,21 @@ TEST_CASE("sRGB's middle grey is a fifth of the light") {
   // Dark levels are spread out, bright ones pressed together.
   CHECK(curve.slope(std::uint8_t{2}) == doctest::Approx(12.92).epsilon(0.001));
   CHECK(curve.slope(std::uint8_t{250}) < 0.6F);
+}
+
+TEST_CASE("many pixels at once get the light and the slope of each") {
+  std::array<std::uint8_t, 256> grey{};
+  for (std::size_t k = 0; k < grey.size(); ++k) grey[k] = static_cast<std::uint8_t>(255 - k);
+  for (const ResponseCurve& curve :
+       {ResponseCurve::linear(), ResponseCurve::srgb(), ResponseCurve::power(1.8)}) {
+    std::array<float, 256> light{}, slopes{};
+    curve.undo(grey.data(), grey.size(), light.data(), slopes.data());
+    for (std::size_t k = 0; k < grey.size(); ++k) {
+      CAPTURE(k);
+      CHECK(light[k] == curve.light(grey[k]));
+      CHECK(slopes[k] == curve.slope(grey[k]));
+    }
+  }
 }
 
 TEST_CASE("between grey levels the light is interpolated") {

@@ -200,6 +200,19 @@ TEST_CASE("a recording is sent frame by frame to its end") {
   CHECK(daemon.wait(kPatience) == 0);
 }
 
+TEST_CASE("more markers than may be reported are told once, and the others go out") {
+  if (!multicast_is_private()) return;
+  constexpr int kPort = 7709;
+  const TemporaryDirectory folder;
+  Subscriber subscriber(url(kPort), "ROUNDEL");
+  ChildProcess daemon(command(folder.write(
+      "roundel.yaml",
+      small_arena(kPort, 4, "detector: {max_markers: 2}\ncontrol: {socket: \"\"}\n"))));
+  CHECK(daemon.wait_for("2 markers are in view: detector.max_markers", kPatience));
+  CHECK(wait_for_frame(subscriber, [](const ReceivedFrame& f) { return f.markers.size() == 2; }) !=
+        nullptr);
+}
+
 // Nothing that could be a camera is at a pipe, and opening one would hang.
 TEST_CASE("roundeld waits for a camera that is not there, through reloads, and ends at SIGTERM") {
   if (!multicast_is_private()) return;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 
 #include "calibration/camera_file.hpp"
@@ -95,16 +94,6 @@ bool DaemonUnderTest::has_logged(const std::string& text) {
 int DaemonUnderTest::descriptors() const {
   const std::string folder = fmt::format("/proc/{}/fd", process_.pid());
   return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
-}
-
-long DaemonUnderTest::memory_kb(const std::string& kind) const {
-  std::ifstream status(fmt::format("/proc/{}/status", process_.pid()));
-  std::string word;
-  long kb = 0;
-  while (status >> word) {
-    if (word == kind) status >> kb;
-  }
-  return kb;
 }
 
 std::string fault_in(const std::vector<DaemonUnderTest::Frame>& frames) {

@@ -45,12 +45,10 @@ class DaemonUnderTest {
   std::string socket() const { return folder_.file("control.sock"); }
   int descriptors() const;
   // Of its memory: all that is resident, or only what is its own, without files and shared memory.
-  long resident_kb() const { return memory_kb("VmRSS:"); }
-  long anonymous_kb() const { return memory_kb("RssAnon:"); }
+  long resident_kb() const { return process_.memory_kb("VmRSS:"); }
+  long anonymous_kb() const { return process_.memory_kb("RssAnon:"); }
 
  private:
-  long memory_kb(const std::string& kind) const;
-
   const Film& film_;
   TemporaryDirectory folder_;
   Subscriber subscriber_;

@@ -195,11 +195,11 @@ TEST_CASE("a daemon that was stopped for a while publishes nothing old") {
   REQUIRE(daemon.receive(kPatienceMs, [&] { return daemon.statuses().size() > before + 1; }));
   CHECK(daemon.statuses().back().dropped_stale >= 1);
   // Stopped in the midst of a frame: the next one comes 33 ms after this one and takes some 2 ms.
-  for (int delay_us = 28'000; delay_us < 34'000; delay_us += 500) {
+  for (int delay_us = 29'000; delay_us < 34'000; delay_us += 1'000) {
     REQUIRE(daemon.poses_arrive(kPatienceMs));
     ::usleep(static_cast<unsigned>(delay_us));
     daemon.process().signal(SIGSTOP);
-    daemon.receive(1000);
+    daemon.receive(1500);
     daemon.process().signal(SIGCONT);
   }
   REQUIRE(daemon.poses_arrive(kPatienceMs));
