@@ -77,6 +77,21 @@ bool may_be_plain_centre(const Segment& segment) {
          std::abs(inner.b / (ratio * segment.ellipse.b) - 1) < tolerance;
 }
 
+// The paper in the middle is that of the margin: of a lid with a hole, or what else is dark around
+// something bright, the floor around has a light of its own.
+bool same_paper(const LumaView& frame, const Segment& segment) {
+  constexpr double kOtherLight = 0.4;  // share of the contrast; half a shadow makes as much
+  constexpr double kTooSmall = 3;      // pixels: blur darkens what is smaller
+  const int u = static_cast<int>(std::lround(segment.inner.u));
+  const int v = static_cast<int>(std::lround(segment.inner.v));
+  double sum = 0;
+  for (int dv = -1; dv <= 1; ++dv) {
+    for (int du = -1; du <= 1; ++du) sum += frame.at(u + du, v + dv);
+  }
+  const double brighter = (sum / 9 - segment.levels.bright) / segment.levels.contrast();
+  return brighter < kOtherLight && (brighter > -kOtherLight || segment.inner.b < kTooSmall);
+}
+
 // A printed disc is as large as it should be to so much of the black one's radius. The picture
 // tells a print of another ratio by as much as blur, an unknown curve of the camera and the pixel
 // grid leave of its area.
@@ -140,14 +155,19 @@ struct Observer::Candidate {
 
   // Whether the fit, as far as there is one, found what a marker looks like.
   bool explained(double contrast) const {
-    if (!fitted) return true;
+    // A code's teeth are proof of themselves; a plain disc that nothing fits is none.
+    if (!fitted) return pattern.kind != Pattern::Kind::kPlain;
     if (pattern.kind == Pattern::Kind::kPlain &&
         (fitted->state.inner_ratio < kPlainInnerRatioMin - 0.04 ||
          fitted->state.inner_ratio > kPlainInnerRatioMax + 0.04)) {
       return false;
     }
     // A disc that leaves more residuals than the outer rim is no disc: a square, say.
+    // Nor is one that is of another light than the paper around: most of its pixels are
+    // disbelieved.
     constexpr double kDiscError = 0.06;  // share of the contrast
+    constexpr double kMinDiscTrust = 0.9;
+    if (pattern.kind == Pattern::Kind::kPlain && fitted->inner_trust < kMinDiscTrust) return false;
     const double error = kDiscError * contrast;
     if (pattern.kind == Pattern::Kind::kPlain &&
         fitted->inner_square > 2 * fitted->outer_square + error * error) {
@@ -232,8 +252,9 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
   }
   // A code that can be read is proof enough, whatever light or glare do to the residuals.
   const bool read = observation.id_probability >= parameters_.min_id_probability;
-  observation.plausible = read || ((observation.coded || may_be_plain_centre(segment)) &&
-                                   candidates[best].explained(segment.levels.contrast()));
+  observation.plausible =
+      read || ((observation.coded || may_be_plain_centre(segment)) && same_paper(frame, segment) &&
+               candidates[best].explained(segment.levels.contrast()));
 }
 
 // Fits the candidates' poses to some of the pixels, which mostly tells already which one it is.

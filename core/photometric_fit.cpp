@@ -341,6 +341,8 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       result.inner_pixels = inside ? pixels_.inner_count() : 0;
       result.pixels = pixels_.outer_count() + (inside ? pixels_.inner_count() : 0);
       result.trust = static_cast<double>(sums.weights) * outer.every / result.pixels;
+      result.inner_trust = static_cast<double>(sums.weights - outer_weights) * outer.every /
+                           std::max(1, result.inner_pixels);
       result.covariance =
           to_camera_axes(state, variance_of(state, step.mean_square_after) * step.inverse);
       if (plan.weigh_parts) {

@@ -73,7 +73,8 @@ struct PhotometricPose {
   int pixels = 0;                                        // that the fit used
   double outer_square = 0, inner_square = 0;  // the same of the outer rim, and of what is inside
   int inner_pixels = 0;
-  double trust = 0;  // share of them that it believed: the rest looks like something else
+  double trust = 0;        // share of them that it believed: the rest looks like something else
+  double inner_trust = 0;  // the same of what is inside
 };
 
 // Fits a marker's pose to the grey values of its image (METHOD.md section 6): every pixel near an

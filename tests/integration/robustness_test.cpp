@@ -130,4 +130,24 @@ TEST_CASE("markers from 20 to 200 pixels across are found and named, slanted by 
   }
 }
 
+TEST_CASE("a dark lid with a bright hole on a grey floor is no marker") {
+  for (const Outline hole : {Outline::Ellipse, Outline::Rectangle}) {
+    for (const double diameter_px : {28.0, 50.0}) {
+      CAPTURE(diameter_px);
+      SceneShape lid;
+      lid.width_m = lid.height_m = kDiameter;
+      lid.hole = hole;
+      lid.hole_ratio = 0.42;
+      lid.pose = marker_at({0.01, -0.007, distance_for(diameter_px)}, 20 * kDegree).pose;
+      Scene scene;
+      scene.clutter.push_back(lid);
+      GreyImage image;
+      Renderer(camera(), usual_imaging()).render(scene, 1, image);
+      DetectorParameters parameters;
+      parameters.diameter_m = kDiameter;
+      CHECK(Detector(parameters, camera()).detect(image.view()).empty());
+    }
+  }
+}
+
 }  // namespace roundel
