@@ -67,7 +67,6 @@ Timings measure_all(const Options& options) {
   for (const int markers : {1, 3, 10, 30, 100, 300, 1000}) {
     add(time_roundel(crowd_scene(markers, few)));
   }
-  for (const int markers : {100, 1000}) add(time_threads(crowd_scene(markers, few), 2));
   for (const int width : {1280, 1920, 3840}) {
     const Experiment scene = resolution_scene(width, 10, few);
     add(time_roundel(scene));

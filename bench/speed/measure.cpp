@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <set>
 
 #include "bench/common/painter.hpp"
 #include "bench/common/roundel_system.hpp"
 #include "bench/speed/stopwatch.hpp"
 #include "core/tracker.hpp"
-#include "daemon/worker_pool.hpp"
 #include "simulator/noise.hpp"
 #include "simulator/random.hpp"
 
@@ -87,27 +85,6 @@ Timings time_roundel(const Experiment& experiment) {
   }
   return {following.timing(experiment, "roundel", "following"),
           first.timing(experiment, "roundel", "first")};
-}
-
-Timings time_threads(const Experiment& experiment, int threads) {
-  Painter painter(experiment, whycode_print(experiment));
-  Tracker alone = tracker_of(experiment), shared = tracker_of(experiment);
-  shared.share_work(std::make_shared<WorkerPool>(threads));
-  Series by_one, by_all;
-  GreyImage picture;
-  for (int i = 0; i < std::ssize(experiment.views); ++i) {
-    const View& view = experiment.views[static_cast<std::size_t>(i)];
-    painter.paint(view, picture);
-    for (const bool all : {false, true}) {
-      std::size_t seen = 0;
-      const double us =
-          wall_time_of([&] { seen = (all ? shared : alone).track(picture.view()).size(); });
-      if (i >= kWarmUp) (all ? by_all : by_one).add(us, seen, view.markers.size());
-    }
-  }
-  return {
-      by_one.timing(experiment, "roundel", "following, wall, 1 thread"),
-      by_all.timing(experiment, "roundel", fmt::format("following, wall, {} threads", threads))};
 }
 
 Timings time_peer(const Experiment& experiment, const Contender& peer, int looks) {

@@ -9,9 +9,6 @@ namespace roundel::bench {
 // tracker that knows nothing.
 Timings time_roundel(const Experiment& experiment);
 
-// Following frames by one thread and by `threads`, both by the clock on the wall.
-Timings time_threads(const Experiment& experiment, int threads);
-
 // A peer on `looks` of the judged views, evenly picked. Every frame is a first one for it.
 Timings time_peer(const Experiment& experiment, const Contender& peer, int looks);
 
