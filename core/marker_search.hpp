@@ -52,7 +52,7 @@ class MarkerSearch {
   // A fill that was given up. Another one in the same region, of a threshold not below and limits
   // not above, would end likewise.
   struct GivenUp {
-    int threshold;
+    int threshold = 0;
     RegionFiller::Limits limits;
   };
   struct RowHead {

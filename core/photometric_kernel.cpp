@@ -106,7 +106,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
   std::array<Sums16<V>, kColumns*(kColumns + 1) / 2> products{};
   Sums16<V> weights;
   Rows<kUnknowns, V> rows;
-  std::array<V, kGroups<V>> trust, ones;
+  std::array<V, kGroups<V>> trust{}, ones{};
   ones.fill(splat<V>(1));
   for (int i = 0; i < pixels.count; i += pixels.every * kPixelBlock) {
     for (std::size_t group = 0; group < kGroups<V>; ++group) {

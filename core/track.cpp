@@ -114,11 +114,11 @@ void Track::smooth_light(const Observation& seen_now) {
   const Eigen::Quaterniond& axes = state->pose.orientation;
   const Eigen::Vector3d read = axes * Eigen::Vector3d(state->slope_x, state->slope_y, 0);
   if (seen_now.lit_anew) {
-    if ((read - light_slope).norm() > kOtherLight) light_readings = 0;
-    if (light_readings < kLightReadings) ++light_readings;
-    light_slope += (read - light_slope) / light_readings;
+    if ((read - light_slope_).norm() > kOtherLight) light_readings_ = 0;
+    if (light_readings_ < kLightReadings) ++light_readings_;
+    light_slope_ += (read - light_slope_) / light_readings_;
   }
-  const Eigen::Vector3d slope = axes.conjugate() * light_slope;
+  const Eigen::Vector3d slope = axes.conjugate() * light_slope_;
   state->slope_x = slope.x();
   state->slope_y = slope.y();
 }

@@ -51,8 +51,8 @@ struct Track {
   void weigh_poses(const Observation& seen_now);
   void smooth_light(const Observation& seen_now);
 
-  Eigen::Vector3d light_slope = Eigen::Vector3d::Zero();  // share a radius, camera axes
-  int light_readings = 0;
+  Eigen::Vector3d light_slope_ = Eigen::Vector3d::Zero();  // share a radius, camera axes
+  int light_readings_ = 0;
 };
 
 }  // namespace roundel
