@@ -28,12 +28,12 @@ void remove_baseline(const std::array<Cubic, 2>& lens, float* x, float* y, int c
   remove<simd::Float8>(lens, x, y, count);
 }
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void remove_avx2(const std::array<Cubic, 2>& lens, float* x,
-                                                 float* y, int count) {
+ROUNDEL_TARGET_AVX2 void remove_avx2(const std::array<Cubic, 2>& lens, float* x, float* y,
+                                     int count) {
   remove<simd::Float8>(lens, x, y, count);
 }
-__attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512"))) void
-remove_avx512(const std::array<Cubic, 2>& lens, float* x, float* y, int count) {
+ROUNDEL_TARGET_AVX512 void remove_avx512(const std::array<Cubic, 2>& lens, float* x, float* y,
+                                         int count) {
   remove<simd::Float16>(lens, x, y, count);
 }
 #endif

@@ -147,11 +147,8 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
 
 ROUNDEL_LINE_KERNELS(baseline, , 16)
 #if defined(__x86_64__)
-ROUNDEL_LINE_KERNELS(avx2, __attribute__((target("avx2"))), 32)
-ROUNDEL_LINE_KERNELS(avx512,
-                     __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq,"
-                                           "prefer-vector-width=512"))),
-                     64)
+ROUNDEL_LINE_KERNELS(avx2, ROUNDEL_TARGET_AVX2, 32)
+ROUNDEL_LINE_KERNELS(avx512, ROUNDEL_TARGET_AVX512, 64)
 #endif
 
 }  // namespace

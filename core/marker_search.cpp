@@ -97,29 +97,28 @@ void MarkerSearch::begin(const LumaView& frame) {
                        static_cast<int>(std::lround(kNoiseFactor * estimate_noise(frame))));
 }
 
-bool MarkerSearch::is_owned(int u, int v, Owner owner) const {
+template <typename Wanted>
+bool MarkerSearch::has_claim(int u, int v, const Wanted& wanted) const {
   const RowHead& head = rows_[static_cast<std::size_t>(v)];
   if (head.stamp != stamp_) return false;
   for (std::int32_t i = head.first; i >= 0; i = claims_[static_cast<std::size_t>(i)].next_in_row) {
     const Claim& claim = claims_[static_cast<std::size_t>(i)];
-    if (u >= claim.u0 && u <= claim.u1 && claim.owner == owner) return true;
+    if (u >= claim.u0 && u <= claim.u1 && wanted(claim)) return true;
   }
   return false;
 }
 
+bool MarkerSearch::is_owned(int u, int v, Owner owner) const {
+  return has_claim(u, v, [owner](const Claim& claim) { return claim.owner == owner; });
+}
+
 bool MarkerSearch::is_hopeless(const Seed& seed, const RegionFiller::Limits& limits) const {
-  const RowHead& head = rows_[static_cast<std::size_t>(seed.v)];
-  if (head.stamp != stamp_) return false;
-  for (std::int32_t i = head.first; i >= 0; i = claims_[static_cast<std::size_t>(i)].next_in_row) {
-    const Claim& claim = claims_[static_cast<std::size_t>(i)];
-    if (claim.owner != Owner::kTooLarge || seed.u < claim.u0 || seed.u > claim.u1) continue;
+  return has_claim(seed.u, seed.v, [&](const Claim& claim) {
+    if (claim.owner != Owner::kTooLarge) return false;
     const GivenUp& fill = given_up_[static_cast<std::size_t>(claim.fill)];
-    if (seed.threshold >= fill.threshold && limits.max_width <= fill.limits.max_width &&
-        limits.max_height <= fill.limits.max_height) {
-      return true;
-    }
-  }
-  return false;
+    return seed.threshold >= fill.threshold && limits.max_width <= fill.limits.max_width &&
+           limits.max_height <= fill.limits.max_height;
+  });
 }
 
 void MarkerSearch::claim(const Run& run, Owner owner, std::int32_t fill) {

@@ -64,6 +64,9 @@ class MarkerSearch {
   void claim(const Run& run, Owner owner, std::int32_t fill = -1);
   bool is_hopeless(const Seed& seed, const RegionFiller::Limits& limits) const;
   bool is_owned(int u, int v, Owner owner) const;
+  // Whether one of the claims on a pixel is as wanted.
+  template <typename Wanted>
+  bool has_claim(int u, int v, const Wanted& wanted) const;
 
   DetectorParameters parameters_;
   int smallest_spacing_ = 1;

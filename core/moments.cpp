@@ -31,6 +31,19 @@ Moments Moments::operator-(const Moments& other) const {
           suu - other.suu, suv - other.suv, svv - other.svv};
 }
 
+std::optional<Ellipse> ellipse_of(const Eigen::Vector2d& mean, double cuu, double cuv, double cvv) {
+  const double middle = (cuu + cvv) / 2;
+  const double spread = std::hypot((cuu - cvv) / 2, cuv);
+  if (!(middle - spread > 0)) return std::nullopt;
+  Ellipse ellipse;
+  ellipse.u = mean.x();
+  ellipse.v = mean.y();
+  ellipse.a = 2 * std::sqrt(middle + spread);
+  ellipse.b = 2 * std::sqrt(middle - spread);
+  ellipse.angle = 0.5 * std::atan2(2 * cuv, cuu - cvv);
+  return ellipse;
+}
+
 std::optional<Ellipse> moment_ellipse(const Moments& moments, int origin_u, int origin_v) {
   if (moments.n < 3) return std::nullopt;
   const double n = static_cast<double>(moments.n);
@@ -40,16 +53,7 @@ std::optional<Ellipse> moment_ellipse(const Moments& moments, int origin_u, int 
   const double cuu = static_cast<double>(moments.suu) / n - mean_u * mean_u + kUnitSquare;
   const double cvv = static_cast<double>(moments.svv) / n - mean_v * mean_v + kUnitSquare;
   const double cuv = static_cast<double>(moments.suv) / n - mean_u * mean_v;
-  const double middle = (cuu + cvv) / 2;
-  const double spread = std::hypot((cuu - cvv) / 2, cuv);
-  if (!(middle - spread > 0)) return std::nullopt;
-  Ellipse ellipse;
-  ellipse.u = origin_u + mean_u;
-  ellipse.v = origin_v + mean_v;
-  ellipse.a = 2 * std::sqrt(middle + spread);
-  ellipse.b = 2 * std::sqrt(middle - spread);
-  ellipse.angle = 0.5 * std::atan2(2 * cuv, cuu - cvv);
-  return ellipse;
+  return ellipse_of({origin_u + mean_u, origin_v + mean_v}, cuu, cuv, cvv);
 }
 
 }  // namespace roundel

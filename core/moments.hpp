@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 
@@ -17,10 +18,13 @@ struct Moments {
   Moments operator-(const Moments& other) const;
 };
 
-// The ellipse with the moments' centre, axes and direction ([P] 3.1): semi-axes are twice the
-// square roots of the covariance's eigenvalues. Pixels are unit squares, not points, so the
-// covariance gets 1/12 more on its diagonal (METHOD.md section 2). Nothing for fewer than three
-// pixels or a line.
+// The ellipse around a mean whose area has this covariance, both in pixels: semi-axes are twice the
+// square roots of the covariance's eigenvalues. Nothing for a line or a point.
+std::optional<Ellipse> ellipse_of(const Eigen::Vector2d& mean, double cuu, double cuv, double cvv);
+
+// The ellipse with the moments' centre, axes and direction ([P] 3.1). Pixels are unit squares, not
+// points, so the covariance gets 1/12 more on its diagonal (METHOD.md section 2). Nothing for fewer
+// than three pixels or a line.
 std::optional<Ellipse> moment_ellipse(const Moments& moments, int origin_u, int origin_v);
 
 }  // namespace roundel

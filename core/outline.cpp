@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/moments.hpp"
+
 namespace roundel {
 
 namespace {
@@ -57,15 +59,7 @@ std::optional<Ellipse> outline_of(const Pose& pose, double radius_m, const Camer
   const double cuu = (uu / area - mean.x() * mean.x()) / short_of;
   const double cvv = (vv / area - mean.y() * mean.y()) / short_of;
   const double cuv = (uv / area - mean.x() * mean.y()) / short_of;
-  const double middle = (cuu + cvv) / 2, spread = std::hypot((cuu - cvv) / 2, cuv);
-  if (!(middle - spread > 0)) return std::nullopt;
-  Ellipse ellipse;
-  ellipse.u = centre->x() + mean.x();
-  ellipse.v = centre->y() + mean.y();
-  ellipse.a = 2 * std::sqrt(middle + spread);
-  ellipse.b = 2 * std::sqrt(middle - spread);
-  ellipse.angle = 0.5 * std::atan2(2 * cuv, cuu - cvv);
-  return ellipse;
+  return ellipse_of(*centre + mean, cuu, cuv, cvv);
 }
 
 }  // namespace roundel

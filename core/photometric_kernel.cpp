@@ -187,15 +187,12 @@ ROUNDEL_KERNELS(baseline, , false, simd::Float8)
 ROUNDEL_KERNELS(baseline_boxed, , true, simd::Float8)
 constexpr Kernels kBaselineKernels{k_baseline, k_baseline_boxed};
 #if defined(__x86_64__)
-// Without fused multiply-add, which would round otherwise than the baseline.
-ROUNDEL_KERNELS(avx2, __attribute__((target("avx2"))), false, simd::Float8)
-ROUNDEL_KERNELS(avx2_boxed, __attribute__((target("avx2"))), true, simd::Float8)
+ROUNDEL_KERNELS(avx2, ROUNDEL_TARGET_AVX2, false, simd::Float8)
+ROUNDEL_KERNELS(avx2_boxed, ROUNDEL_TARGET_AVX2, true, simd::Float8)
 constexpr Kernels kAvx2Kernels{k_avx2, k_avx2_boxed};
 // Twice as many registers, twice as wide.
-#define ROUNDEL_AVX512 \
-  __attribute__((target("avx2,avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")))
-ROUNDEL_KERNELS(avx512, ROUNDEL_AVX512, false, simd::Float16)
-ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_AVX512, true, simd::Float16)
+ROUNDEL_KERNELS(avx512, ROUNDEL_TARGET_AVX512, false, simd::Float16)
+ROUNDEL_KERNELS(avx512_boxed, ROUNDEL_TARGET_AVX512, true, simd::Float16)
 constexpr Kernels kAvx512Kernels{k_avx512, k_avx512_boxed};
 #endif
 

@@ -6,6 +6,7 @@
 #include "core/necklace.hpp"
 #include "core/plane_projection.hpp"
 #include "simulator/renderer.hpp"
+#include "tests/pinhole.hpp"
 
 // One WhyCode marker before a small camera, for tests of what disturbs it.
 namespace roundel::one_marker {
@@ -15,13 +16,7 @@ inline constexpr double kDiameter = 0.084, kFocal = 920;
 inline constexpr double kDegree = std::numbers::pi / 180;
 
 inline CameraModel camera(int width = 320, int height = 240) {
-  CameraModel camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = kFocal;
-  camera.cx = 0.5 * (width - 1);
-  camera.cy = 0.5 * (height - 1);
-  return camera;
+  return test::pinhole(width, height, kFocal);
 }
 
 // `incidence`: of the line of sight on the printed face; `axis_turn`: which way it is tilted.

@@ -9,6 +9,7 @@
 #include "core/camera_model.hpp"
 #include "core/grey_image.hpp"
 #include "simulator/scene.hpp"
+#include "tests/pinhole.hpp"
 
 // What the tests compare the simulator with. Nothing here calls the simulator: the lens formula,
 // the outline and the printed pattern are written out again, and pictures are taken the other way
@@ -29,15 +30,7 @@ inline Eigen::Quaterniond turned(double tilt, double tilt_direction, double yaw)
          Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
 }
 
-inline roundel::CameraModel pinhole(int width, int height, double focal) {
-  roundel::CameraModel camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = focal;
-  camera.cx = 0.5 * (width - 1);
-  camera.cy = 0.5 * (height - 1);
-  return camera;
-}
+using roundel::test::pinhole;
 
 inline roundel::CameraModel webcam() {
   roundel::CameraModel camera = pinhole(1920, 1080, 1452);

@@ -10,6 +10,7 @@
 #include "core/detector.hpp"
 #include "core/necklace.hpp"
 #include "daemon/image_file.hpp"
+#include "tests/pinhole.hpp"
 #include "tests/tools/run_roundel.hpp"
 #include "tools/marker_sheet.hpp"
 #include "tools/page_output.hpp"
@@ -77,13 +78,7 @@ GreyImage scaled_and_turned(const Picture& master, double diameter_px, double tu
 }
 
 CameraModel camera_for(const GreyImage& image) {
-  CameraModel camera;
-  camera.width = image.width;
-  camera.height = image.height;
-  camera.fx = camera.fy = 1000;
-  camera.cx = 0.5 * (image.width - 1);
-  camera.cy = 0.5 * (image.height - 1);
-  return camera;
+  return test::pinhole(image.width, image.height, 1000);
 }
 
 // Counter-clockwise angle, as seen, of the marker's x axis from the image's right.
