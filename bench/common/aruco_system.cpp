@@ -43,6 +43,12 @@ std::vector<SquarePattern> patterns_for(const Experiment& experiment) {
 
 using Corners = std::vector<cv::Point2f>;  // clockwise from the page's top left
 
+// The same on the print itself, metres.
+std::vector<cv::Point3f> printed_corners(double diameter_m) {
+  const auto h = static_cast<float>(0.5 * diameter_m);
+  return {{-h, h, 0}, {h, h, 0}, {h, -h, 0}, {-h, -h, 0}};
+}
+
 class ArucoSystem final : public System {
  public:
   ArucoSystem(const Experiment& experiment, bool sub_pixel)
@@ -50,13 +56,12 @@ class ArucoSystem final : public System {
         sub_pixel_(sub_pixel),
         name_(sub_pixel ? "aruco-subpix" : "aruco"),
         dictionary_(dictionary_for(experiment)),
-        parameters_(cv::aruco::DetectorParameters::create()) {
+        parameters_(cv::aruco::DetectorParameters::create()),
+        object_(printed_corners(experiment.diameter_m)) {
     const CameraModel& c = experiment.camera;
     camera_ = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
     const Distortion& d = c.distortion;
     lens_ = (cv::Mat_<double>(1, 5) << d.k1, d.k2, d.p1, d.p2, d.k3);
-    const auto h = static_cast<float>(0.5 * experiment.diameter_m);
-    object_ = {{-h, h, 0}, {h, h, 0}, {h, -h, 0}, {-h, -h, 0}};
   }
 
   const std::string& name() const override { return name_; }
