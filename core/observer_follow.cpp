@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/conic.hpp"
 #include "core/observer.hpp"
 #include "core/outline.hpp"
 
@@ -28,16 +29,6 @@ constexpr double kMotionStretch = 0.1;
 // pixel is disbelieved: a bit of another word would be one in twenty.
 constexpr double kMaxGrowth = 1.3, kMinTrust = 0.97;
 
-// The other pose that the same outline allows, seen from far: mirrored in the plane across the line
-// of sight. Good to a few percent of the radius over the distance, which does for an alternative.
-Pose mirrored(const Pose& pose) {
-  const Eigen::Vector3d sight = pose.position.normalized();
-  const Eigen::Matrix3d axes = pose.orientation.toRotationMatrix();
-  Eigen::Matrix3d other = axes - 2 * sight * (sight.transpose() * axes);
-  other.col(2) = other.col(0).cross(other.col(1));
-  return {pose.position, with_positive_w(Eigen::Quaterniond(other).normalized())};
-}
-
 }  // namespace
 
 std::optional<Ellipse> Observer::outline(const Pose& pose) const {
@@ -56,17 +47,22 @@ bool Observer::move(Pose& pose, const Ellipse& from, const Ellipse& to) const {
   return true;
 }
 
-std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHypothesis& last,
-                                            const Expectation& expected, int worker) {
-  PhotometricFit& fit = worker == 0 ? fit_ : more_fits_[static_cast<std::size_t>(worker) - 1];
+// The light's slope stays where it is while the marker turns beneath it.
+PhotometricState Observer::start_from(const PoseHypothesis& last, const Pose& expected) const {
   PhotometricState start = *last.state;
-  start.pose = expected.pose;
-  // The light's slope stays where it is while the marker turns beneath it.
+  start.pose = expected;
   const Eigen::Vector3d slope =
-      expected.pose.orientation.conjugate() *
+      expected.orientation.conjugate() *
       (last.pose.orientation * Eigen::Vector3d(start.slope_x, start.slope_y, 0));
   start.slope_x = slope.x();
   start.slope_y = slope.y();
+  return start;
+}
+
+std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHypothesis& last,
+                                            const Expectation& expected, int worker) {
+  PhotometricFit& fit = worker == 0 ? fit_ : more_fits_[static_cast<std::size_t>(worker) - 1];
+  PhotometricState start = start_from(last, expected.pose);
   const double reach = std::min(kMaxReach, kReachBlurs * start.blur_px + kReachSlack);
   InnerEdges inner;
   if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
@@ -114,7 +110,7 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHyp
   found.pattern = last.pattern;
   found.state = fitted->state;
   found.mean_square = fitted->mean_square;
-  observation.poses[1].pose = mirrored(found.pose);
+  observation.poses[1].pose = mirrored_pose(found.pose);
   observation.poses[1].covariance = found.covariance;
   return observation;
 }
