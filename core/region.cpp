@@ -78,6 +78,7 @@ FillResult RegionFiller::append(int u, int v) {
     return FillResult::kTooLarge;
   }
   runs_.push_back({v, u0, u1});
+  open_.push_back({v, u0, u1});
   return FillResult::kComplete;
 }
 
@@ -103,8 +104,10 @@ FillResult RegionFiller::grow(int u, int v) {
   }
   box_ = {u, v, u, v};
   FillResult result = append(u, v);
-  for (std::size_t next = 0; next < runs_.size() && result == FillResult::kComplete; ++next) {
-    const Run run = runs_[next];
+  // The newest first: what grows beyond the limits does so soon, in a straight line.
+  while (!open_.empty() && result == FillResult::kComplete) {
+    const Run run = open_.back();
+    open_.pop_back();
     result = append_neighbours(run, run.v - 1);
     if (result == FillResult::kComplete) result = append_neighbours(run, run.v + 1);
   }
@@ -146,6 +149,7 @@ FillResult RegionFiller::fill(const LumaView& frame, int u, int v, int threshold
   threshold_ = static_cast<std::uint8_t>(std::clamp(threshold, 0, 255));
   limits_ = limits;
   runs_.clear();
+  open_.clear();
   const FillResult result = grow(u, v);
   if (result == FillResult::kComplete) summarise(u, v);
   return result;

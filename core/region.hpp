@@ -81,7 +81,8 @@ class RegionFiller {
   Limits limits_;
   Box box_;
 
-  std::vector<Run> runs_;    // in order of discovery; also the work list
+  std::vector<Run> runs_;    // in order of discovery
+  std::vector<Run> open_;    // of these, what has not been looked around yet
   std::vector<Word> words_;  // row by row
   int words_a_row_ = 0;
   std::vector<Run> spans_;
