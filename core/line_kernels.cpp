@@ -127,17 +127,17 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
   const auto greatest = [](const V& a, const V& b) __attribute__((always_inline)) {
     return a > b ? a : b;
   };
-  const V none{}, all = ~none, wanted = none + contrast;
+  const V wanted = V{} + contrast;
   for (std::size_t i = 0; i < blocks; i += kBytes) {
     const V here_low = load(low + i + 1), here_high = load(high + i + 1);
     const V l = least(least(load(low + i), here_low), load(low + i + 2));
     const V h = greatest(greatest(load(high + i), here_high), load(high + i + 2));
     const V half = (l | h) - ((l ^ h) >> 1);  // rounded up
-    const V contrasted = h - l >= wanted ? all : none;
+    const V contrasted = V(h - l >= wanted);
     store(half, looks.threshold + i);
     store((here_low & here_high) + ((here_low ^ here_high) >> 1), looks.middle + i);
     store(contrasted, looks.contrasted + i);
-    store(here_low < half ? (here_high >= half ? contrasted : none) : none, looks.crossing + i);
+    store(contrasted & V(here_low < half) & V(here_high >= half), looks.crossing + i);
   }
 }
 

@@ -160,20 +160,18 @@ Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold
 
 void MarkerSearch::search(const LumaView& frame, const Box& area, int spacing, std::size_t limit,
                           std::vector<Segment>& found) {
-  const int u0 = std::max(0, area.u0), u1 = std::min(frame.width - 1, area.u1);
-  const int last_v = std::min(frame.height - 2, area.v1);
-  for (int v = std::max(0, area.v0); v <= last_v; v += spacing) {
-    for (const Seed& seed :
-         scanner_.scan(frame, v, u0, u1, contrast_, parameters_.max_diameter_px)) {
+  scanner_.start(frame, area, spacing, contrast_, parameters_.max_diameter_px);
+  while (scanner_.next()) {
+    for (const Seed& seed : scanner_.seeds()) {
       if (found.size() >= limit) return;
-      if (is_claimed(seed.u, v) || is_claimed(seed.bright_u, v)) continue;
-      if (is_owned(seed.u, v, Owner::kNoMarker)) continue;
+      if (is_claimed(seed.u, seed.v) || is_claimed(seed.bright_u, seed.v)) continue;
+      if (is_owned(seed.u, seed.v, Owner::kNoMarker)) continue;
       const int column = fitting_column(frame, seed, parameters_.max_diameter_px);
       if (column == 0) continue;
       const RegionFiller::Limits limits{static_cast<int>(kMaxBoxToChord * seed.extent) + 4,
                                         static_cast<int>(kMaxBoxToChord * column) + 4};
       if (is_hopeless(seed, limits)) continue;
-      const Verdict verdict = examine(frame, seed.u, v, seed.threshold, limits);
+      const Verdict verdict = examine(frame, seed.u, seed.v, seed.threshold, limits);
       if (verdict == Verdict::kAccepted) {
         found.push_back(finder_.segment());
       } else if (verdict == Verdict::kTooLarge) {

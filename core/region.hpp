@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/box.hpp"
 #include "core/luma_view.hpp"
 #include "core/moments.hpp"
 
@@ -12,13 +13,6 @@ namespace roundel {
 // Pixels u0 ... u1 of row v, both ends included.
 struct Run {
   int v = 0, u0 = 0, u1 = 0;
-};
-
-// A pixel rectangle, all four sides included.
-struct Box {
-  int u0 = 0, v0 = 0, u1 = 0, v1 = 0;
-  int width() const { return u1 - u0 + 1; }
-  int height() const { return v1 - v0 + 1; }
 };
 
 enum class FillResult {
