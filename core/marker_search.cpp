@@ -62,11 +62,15 @@ int fitting_column(const LumaView& frame, const Seed& seed, int max_diameter) {
   const int step = std::max(1, seed.extent / kThinnestRing);
   const ColumnWalk up(frame, seed.bright_u, seed.v, -1, seed.threshold, reach);
   const ColumnWalk down(frame, seed.bright_u, seed.v, 1, seed.threshold, reach);
-  const int up_bright = up.change(0, false, step), down_bright = down.change(0, false, step);
-  if (up_bright == up.length() || down_bright == down.length()) return 0;
+  // Up first: these rows have been read before, those below are yet to come into the cache.
+  const int up_bright = up.change(0, false, step);
+  if (up_bright == up.length()) return 0;
   const int up_end = up.change(up_bright, true, step);
+  if (up_end == up.length()) return 0;
+  const int down_bright = down.change(0, false, step);
+  if (down_bright == down.length()) return 0;
   const int down_end = down.change(down_bright, true, step);
-  if (up_end == up.length() || down_end == down.length()) return 0;
+  if (down_end == down.length()) return 0;
   if (!is_marker_pattern(up_end - up_bright, up_bright + down_bright, down_end - down_bright)) {
     return 0;
   }

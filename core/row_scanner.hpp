@@ -44,6 +44,7 @@ class RowScanner {
     std::vector<std::uint8_t> block_min, block_max;
   };
 
+  void prefetch(int v) const;
   void prepare(Line& line, int v);
   void find_runs(const Line& line);
   void find_seeds(const Line& line);
