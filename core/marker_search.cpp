@@ -14,6 +14,12 @@ namespace {
 // marker tilted by 75 degrees at the worst angle. Chords a little off the middle are shorter.
 constexpr double kMaxBoxToChord = 2.4;
 
+// A region that outgrew a seed's limits is tried again only if another row allows it as much more, or
+// takes as much less for dark, as a share of the contrast. The row through a marker's middle allows
+// 1.17 times what the most askew one needs.
+constexpr double kLimitGrowth = 1.15;
+constexpr int kThresholdShare = 8;
+
 // A marker's column is at most four times as long as its row when it is tilted by 75 degrees; from
 // the middle of the bright run either way it is less than three quarters of that.
 constexpr int kMaxReachToChord = 3;
@@ -120,8 +126,9 @@ bool MarkerSearch::is_hopeless(const Seed& seed, const RegionFiller::Limits& lim
   return has_claim(seed.u, seed.v, [&](const Claim& claim) {
     if (claim.owner != Owner::kTooLarge) return false;
     const GivenUp& fill = given_up_[static_cast<std::size_t>(claim.fill)];
-    return seed.threshold >= fill.threshold && limits.max_width <= fill.limits.max_width &&
-           limits.max_height <= fill.limits.max_height;
+    return seed.threshold + contrast_ / kThresholdShare >= fill.threshold &&
+           limits.max_width <= kLimitGrowth * fill.limits.max_width &&
+           limits.max_height <= kLimitGrowth * fill.limits.max_height;
   });
 }
 

@@ -77,8 +77,10 @@ class RegionFiller {
 
   std::vector<Run> runs_;    // in order of discovery
   std::vector<Run> open_;    // of these, what has not been looked around yet
-  std::vector<Word> words_;  // row by row
-  int words_a_row_ = 0;
+  // What the limits let a fill reach, row by row: packed, so that a marker's words fit into the
+  // nearest cache.
+  std::vector<Word> words_;
+  int first_row_ = 0, first_column_ = 0, columns_ = 0;
   std::vector<Run> spans_;
   std::uint32_t stamp_ = 0;
   Region region_;
