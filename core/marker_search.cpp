@@ -14,10 +14,10 @@ namespace {
 // marker tilted by 75 degrees at the worst angle. Chords a little off the middle are shorter.
 constexpr double kMaxBoxToChord = 2.4;
 
-// A region that outgrew a seed's limits is tried again only if another row allows it as much more, or
-// takes as much less for dark, as a share of the contrast. The row through a marker's middle allows
-// 1.17 times what the most askew one needs.
-constexpr double kLimitGrowth = 1.15;
+// A region that outgrew a seed's limits is tried again only if another row allows it as much more,
+// or takes as much less for dark, as a share of the contrast. The row through a marker's middle
+// allows 1.17 times what the most askew one needs.
+constexpr double kLimitGrowth = 1.10;
 constexpr int kThresholdShare = 8;
 
 // A marker's column is at most four times as long as its row when it is tilted by 75 degrees; from

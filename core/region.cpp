@@ -33,8 +33,9 @@ __attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v
 }
 
 inline RegionFiller::Word& RegionFiller::word(int column, int v) {
-  Word& word = words_[static_cast<std::size_t>(v - first_row_) * static_cast<std::size_t>(columns_) +
-                      static_cast<std::size_t>(column - first_column_)];
+  Word& word =
+      words_[static_cast<std::size_t>(v - first_row_) * static_cast<std::size_t>(columns_) +
+             static_cast<std::size_t>(column - first_column_)];
   if (word.stamp != stamp_) [[unlikely]] {
     word = {classify(column, v), stamp_};
   }

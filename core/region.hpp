@@ -75,8 +75,8 @@ class RegionFiller {
   Limits limits_;
   Box box_;
 
-  std::vector<Run> runs_;    // in order of discovery
-  std::vector<Run> open_;    // of these, what has not been looked around yet
+  std::vector<Run> runs_;  // in order of discovery
+  std::vector<Run> open_;  // of these, what has not been looked around yet
   // What the limits let a fill reach, row by row: packed, so that a marker's words fit into the
   // nearest cache.
   std::vector<Word> words_;

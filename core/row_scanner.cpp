@@ -155,10 +155,9 @@ void RowScanner::prepare(Line& line, int v) {
 }
 
 void RowScanner::find_runs(const Line& line) {
-  line_kernels().judge(
-      line.block_min.data(), line.block_max.data(), threshold_.size(),
-      static_cast<std::uint8_t>(contrast_),
-      {threshold_.data(), middle_.data(), contrasted_.data(), crossing_.data()});
+  line_kernels().judge(line.block_min.data(), line.block_max.data(), threshold_.size(),
+                       static_cast<std::uint8_t>(contrast_),
+                       {threshold_.data(), middle_.data(), contrasted_.data(), crossing_.data()});
 
   run_ends_.clear();
   first_run_dark_ = false;
