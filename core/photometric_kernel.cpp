@@ -177,10 +177,47 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
   sums.weights += total<V>(weights);
 }
 
+// The right side alone, and the sums of squares and weights: what parts of a marker pull at.
+template <typename V, typename Model>
+ROUNDEL_INLINE void add_pulls(const PhotometricModel& m, const PixelColumns& pixels,
+                              PhotometricSums& sums, const Model& expect) {
+  constexpr int kUnknowns = kPhotometricUnknowns;
+  std::array<Sums16<V>, kUnknowns + 1> products{};
+  Sums16<V> weights{};
+  Rows<kUnknowns, V> rows;
+  for (int i = 0; i < pixels.count; i += pixels.every * kPixelBlock) {
+    for (int in_block = 0; in_block < kPixelBlock; in_block += simd::kLanesOf<V>) {
+      const int at = i + in_block;
+      const std::size_t part = static_cast<std::size_t>(in_block) / simd::kLanesOf<V> % kParts<V>;
+      const auto p = photometric::plane_point<V>(m, load<V>(pixels.x + at), load<V>(pixels.y + at));
+      weights[part] += fill_rows<kUnknowns, V>(m, p, expect(p), load<V>(pixels.grey + at),
+                                               load<V>(pixels.weight + at), 0, rows);
+#pragma GCC unroll 16
+      for (std::size_t k = 0; k <= kUnknowns; ++k) {
+        products[k][part] += rows[k][0] * rows[kUnknowns][0];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < kUnknowns; ++k) sums.right_side[k] += total<V>(products[k]);
+  sums.squares += total<V>(products.back());
+  sums.weights += total<V>(weights);
+}
+
+// kUnknowns of 0: the pulls at all of them.
+template <int kUnknowns, typename V, typename Model>
+ROUNDEL_INLINE void add(const PhotometricModel& m, const PixelColumns& pixels,
+                        PhotometricSums& sums, const Model& expect) {
+  if constexpr (kUnknowns == 0) {
+    add_pulls<V>(m, pixels, sums, expect);
+  } else {
+    add_pixels<kUnknowns, V>(m, pixels, sums, expect);
+  }
+}
+
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add_pixels<kUnknowns, V>(
+  add<kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::outer_rim<kBoxed, V>(m, p);
       });
@@ -189,7 +226,7 @@ ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pix
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixels,
                              PhotometricSums& sums) {
-  add_pixels<kUnknowns, V>(
+  add<kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::code_ring<kBoxed, V>(m, p);
       });
@@ -198,7 +235,7 @@ ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixe
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_plain(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add_pixels<kUnknowns, V>(
+  add<kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::plain_centre<kBoxed, V>(m, p);
       });
@@ -208,6 +245,7 @@ using Kernel = void (*)(const PhotometricModel&, const PixelColumns&, Photometri
 struct Kernels {
   struct Set {
     Kernel followed_outer, followed_code, code_outer, code_code, outer, plain;
+    Kernel pulls_outer, pulls_code, pulls_plain;
   };
   Set gaussian, boxed;
 };
@@ -225,8 +263,12 @@ struct Kernels {
   ROUNDEL_KERNEL(set##_code_code, attribute, add_code, kCodeUnknowns, boxed, lanes)           \
   ROUNDEL_KERNEL(set##_outer, attribute, add_outer, kPhotometricUnknowns, boxed, lanes)       \
   ROUNDEL_KERNEL(set##_plain, attribute, add_plain, kPhotometricUnknowns, boxed, lanes)       \
+  ROUNDEL_KERNEL(set##_pulls_outer, attribute, add_outer, 0, boxed, lanes)                    \
+  ROUNDEL_KERNEL(set##_pulls_code, attribute, add_code, 0, boxed, lanes)                      \
+  ROUNDEL_KERNEL(set##_pulls_plain, attribute, add_plain, 0, boxed, lanes)                    \
   constexpr Kernels::Set k_##set{set##_followed_outer, set##_followed_code, set##_code_outer, \
-                                 set##_code_code,      set##_outer,         set##_plain};
+                                 set##_code_code,      set##_outer,         set##_plain,      \
+                                 set##_pulls_outer,    set##_pulls_code,    set##_pulls_plain};
 
 // NOLINTEND(bugprone-macro-parentheses)
 ROUNDEL_KERNELS(baseline, , false, simd::Float8)
@@ -274,6 +316,17 @@ void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels,
                      : unknowns == kFollowedUnknowns ? k.followed_code
                                                      : k.code_code;
   add(model, pixels, sums);
+}
+
+void add_outer_pulls(const PhotometricModel& model, const PixelColumns& pixels,
+                     PhotometricSums& sums, VectorUnit unit) {
+  kernels(model, unit).pulls_outer(model, pixels, sums);
+}
+
+void add_inner_pulls(const PhotometricModel& model, const PixelColumns& pixels,
+                     PhotometricSums& sums, VectorUnit unit) {
+  const Kernels::Set& k = kernels(model, unit);
+  (model.halves == 0 ? k.pulls_plain : k.pulls_code)(model, pixels, sums);
 }
 
 }  // namespace roundel
