@@ -104,8 +104,9 @@ template <std::size_t kColumns, typename V>
 using Products = std::array<Sums16<V>, kColumns*(kColumns + 1) / 2>;
 
 // Adds the products of some neighbouring rows and columns: as many as have their sums in registers.
+// What is round (kRound) looks the same after a turn about its normal, whose products are left out.
 constexpr std::size_t kTileRows = 4, kTileColumns = 3;
-template <std::size_t kFirstRow, std::size_t kFirstColumn, int kUnknowns, typename V>
+template <std::size_t kFirstRow, std::size_t kFirstColumn, bool kRound, int kUnknowns, typename V>
 ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
                              Products<kUnknowns + 1, V>& products) {
   constexpr std::size_t kColumns = kUnknowns + 1;
@@ -115,7 +116,8 @@ ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
     for (std::size_t r = kFirstRow; r < kEndRow; ++r) {
 #pragma GCC unroll 3
       for (std::size_t c = kFirstColumn; c < kFirstColumn + kTileColumns; ++c) {
-        if (c <= r) work(r, c, (r - kFirstRow) * kTileColumns + c - kFirstColumn);
+        if (c > r || (kRound && (r == kTurnZ || c == kTurnZ))) continue;
+        work(r, c, (r - kFirstRow) * kTileColumns + c - kFirstColumn);
       }
     }
   };
@@ -133,21 +135,22 @@ ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
   }
 }
 
-template <int kUnknowns, typename V, std::size_t kFirstRow = 0, std::size_t kFirstColumn = 0>
+template <bool kRound, int kUnknowns, typename V, std::size_t kFirstRow = 0,
+          std::size_t kFirstColumn = 0>
 ROUNDEL_INLINE void add_products(const Rows<kUnknowns, V>& rows, std::size_t groups,
                                  Products<kUnknowns + 1, V>& products) {
   if constexpr (kFirstRow <= kUnknowns) {
-    add_tile<kFirstRow, kFirstColumn, kUnknowns, V>(rows, groups, products);
+    add_tile<kFirstRow, kFirstColumn, kRound, kUnknowns, V>(rows, groups, products);
     constexpr std::size_t kNextColumn = kFirstColumn + kTileColumns;
     if constexpr (kNextColumn < std::min<std::size_t>(kFirstRow + kTileRows, kUnknowns + 1)) {
-      add_products<kUnknowns, V, kFirstRow, kNextColumn>(rows, groups, products);
+      add_products<kRound, kUnknowns, V, kFirstRow, kNextColumn>(rows, groups, products);
     } else {
-      add_products<kUnknowns, V, kFirstRow + kTileRows, 0>(rows, groups, products);
+      add_products<kRound, kUnknowns, V, kFirstRow + kTileRows, 0>(rows, groups, products);
     }
   }
 }
 
-template <int kUnknowns, typename V, typename Model>
+template <bool kRound, int kUnknowns, typename V, typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr std::size_t kColumns = kUnknowns + 1;
@@ -166,7 +169,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
             m, p, expect(p), load<V>(pixels.grey + at), load<V>(pixels.weight + at), groups, rows);
       }
     }
-    add_products<kUnknowns, V>(rows, groups, products);
+    add_products<kRound, kUnknowns, V>(rows, groups, products);
   }
   constexpr std::size_t kEntries = entry(kUnknowns, 0);
   for (std::size_t k = 0; k < kEntries; ++k) sums.normal_matrix[k] += total<V>(products[k]);
@@ -204,20 +207,20 @@ ROUNDEL_INLINE void add_pulls(const PhotometricModel& m, const PixelColumns& pix
 }
 
 // kUnknowns of 0: the pulls at all of them.
-template <int kUnknowns, typename V, typename Model>
+template <bool kRound, int kUnknowns, typename V, typename Model>
 ROUNDEL_INLINE void add(const PhotometricModel& m, const PixelColumns& pixels,
                         PhotometricSums& sums, const Model& expect) {
   if constexpr (kUnknowns == 0) {
     add_pulls<V>(m, pixels, sums, expect);
   } else {
-    add_pixels<kUnknowns, V>(m, pixels, sums, expect);
+    add_pixels<kRound, kUnknowns, V>(m, pixels, sums, expect);
   }
 }
 
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add<kUnknowns, V>(
+  add<true, kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::outer_rim<kBoxed, V>(m, p);
       });
@@ -226,7 +229,7 @@ ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pix
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixels,
                              PhotometricSums& sums) {
-  add<kUnknowns, V>(
+  add<false, kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::code_ring<kBoxed, V>(m, p);
       });
@@ -235,7 +238,7 @@ ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixe
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_plain(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add<kUnknowns, V>(
+  add<true, kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::plain_centre<kBoxed, V>(m, p);
       });
