@@ -34,8 +34,9 @@ std::optional<Conic> fit_conic(std::span<const Eigen::Vector2d> points);
 // frontally. Nothing for conics that are no ellipse in front of the camera.
 std::optional<std::array<CirclePose, 2>> circle_poses(const Conic& conic, double radius_m);
 
-// The other pose that a circle's outline allows, seen from far: mirrored in the plane across the line
-// of sight. Good to a few percent of the radius over the distance, which does for an alternative.
+// The other pose that a circle's outline allows, seen from far: mirrored in the plane across the
+// line of sight. Good to a few percent of the radius over the distance, which does for an
+// alternative.
 Pose mirrored_pose(const Pose& pose);
 
 }  // namespace roundel

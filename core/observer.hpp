@@ -68,9 +68,10 @@ class Observer {
   std::optional<Observation> follow(const LumaView& frame, const PoseHypothesis& last,
                                     const Expectation& expected, int worker = 0);
 
-  // The marker of a track whose word is known, where something lies over it or its light is not even:
-  // fitted from where it is expected to what of it can be believed, for as long as that is most of
-  // it. Of the id it says what can still be read. Nothing when the picture does not bear it out.
+  // The marker of a track whose word is known, where something lies over it or its light is not
+  // even: fitted from where it is expected to what of it can be believed, for as long as that is
+  // most of it. Of the id it says what can still be read. Nothing when the picture does not bear it
+  // out.
   std::optional<Observation> follow_disturbed(const LumaView& frame, const PoseHypothesis& last,
                                               const Expectation& expected);
 
@@ -102,7 +103,9 @@ class Observer {
   void fit_roughly(const Segment& segment, std::array<Candidate, 2>& candidates);
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 
-  PhotometricState start_from(const PoseHypothesis& last, const Pose& expected) const;
+  static Observation followed(const Pattern& pattern, const Expectation& expected,
+                              const PhotometricPose& fitted);
+  static PhotometricState start_from(const PoseHypothesis& last, const Pose& expected);
 
   void weigh_curve(const LumaView& frame, const Segment& segment, const Candidate& candidate);
 

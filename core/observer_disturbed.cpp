@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/conic.hpp"
 #include "core/observer.hpp"
 
 namespace roundel {
@@ -62,29 +61,14 @@ std::optional<Observation> Observer::follow_disturbed(const LumaView& frame,
   const Eigen::Vector3d moved = state.pose.position - expected.pose.position;
   if (moved.head<2>().norm() > allowed || turned > kMaxTurn) return std::nullopt;
 
-  Observation observation;
   const auto seen = outline(state.pose);
   if (!seen) return std::nullopt;
+  Observation observation = followed(last.pattern, expected, *fitted);
   observation.segment.ellipse = *seen;
-  observation.segment.levels = {state.dark, state.dark + state.contrast};
-  observation.coded = last.pattern.kind == Pattern::Kind::kCode;
-  observation.plausible = true;
-  observation.followed = true;
   observation.disturbed = fitted->trust < kUndisturbed;
-  observation.pose_count = 2;
-  PoseHypothesis& found = observation.poses[0];
-  found.pose = state.pose;
-  found.disagreement = fitted->disagreement;
-  found.covariance = fitted->covariance;
-  found.pattern = last.pattern;
-  found.state = state;
-  found.mean_square = fitted->mean_square;
-  observation.poses[1].pose = mirrored_pose(found.pose);
-  observation.poses[1].covariance = found.covariance;
-
   if (reader_ && observation.coded) {
-    const auto reading = reader_->read(frame, PlaneProjection(found.pose, radius_m, *camera_),
-                                       expected.ellipse.a, observation.segment.levels);
+    const auto reading = reader_->read(frame, PlaneProjection(state.pose, radius_m, *camera_),
+                                       expected.ellipse.a, expected.levels);
     if (reading && reading->id > 0 && reading->probability >= kSureReading) {
       observation.id = reading->id;
       observation.id_probability = reading->probability;

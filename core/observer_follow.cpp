@@ -49,7 +49,7 @@ bool Observer::move(Pose& pose, const Ellipse& from, const Ellipse& to) const {
 }
 
 // The light's slope stays where it is while the marker turns beneath it.
-PhotometricState Observer::start_from(const PoseHypothesis& last, const Pose& expected) const {
+PhotometricState Observer::start_from(const PoseHypothesis& last, const Pose& expected) {
   PhotometricState start = *last.state;
   start.pose = expected;
   const Eigen::Vector3d slope =
@@ -90,27 +90,35 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHyp
   plan.rough_every = 4;
   plan.settled = kSettled;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * expected.levels.contrast();
-  const auto fitted = fit.fit(start, last.pattern, edge_look(last.pattern), plan);
+  auto fitted = fit.fit(start, last.pattern, edge_look(last.pattern), plan);
   if (!fitted || fitted->trust < kMinTrust) return std::nullopt;
   const double floor = kModelError * expected.levels.contrast();
   if (fitted->mean_square > kMaxGrowth * (last.mean_square + floor * floor)) return std::nullopt;
 
+  // Residuals that are as they were come from parts that disagree as they did.
+  fitted->disagreement = last.disagreement;
+  fitted->covariance += last.disagreement;
+  Observation observation = followed(last.pattern, expected, *fitted);
+  observation.lit_anew = all;
+  return observation;
+}
+
+Observation Observer::followed(const Pattern& pattern, const Expectation& expected,
+                               const PhotometricPose& fitted) {
   Observation observation;
   observation.segment.ellipse = expected.ellipse;
   observation.segment.levels = expected.levels;
-  observation.coded = last.pattern.kind == Pattern::Kind::kCode;
+  observation.coded = pattern.kind == Pattern::Kind::kCode;
   observation.plausible = true;
   observation.followed = true;
-  observation.lit_anew = all;
   observation.pose_count = 2;
   PoseHypothesis& found = observation.poses[0];
-  found.pose = fitted->state.pose;
-  // Residuals that are as they were come from parts that disagree as they did.
-  found.disagreement = last.disagreement;
-  found.covariance = fitted->covariance + last.disagreement;
-  found.pattern = last.pattern;
-  found.state = fitted->state;
-  found.mean_square = fitted->mean_square;
+  found.pose = fitted.state.pose;
+  found.disagreement = fitted.disagreement;
+  found.covariance = fitted.covariance;
+  found.pattern = pattern;
+  found.state = fitted.state;
+  found.mean_square = fitted.mean_square;
   observation.poses[1].pose = mirrored_pose(found.pose);
   observation.poses[1].covariance = found.covariance;
   return observation;

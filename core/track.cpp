@@ -22,7 +22,8 @@ constexpr double kVelocityGain = 0.5, kChangeGain = 0.3;
 constexpr double kSurePose = 10, kSureName = 0.9999;
 // Faster than that a robot does not turn, radians a frame; a flip of the pose does.
 constexpr double kMaxTurn = 0.3;
-// Residuals of a marker that looks as it did grow by no more than that, a share of the contrast aside.
+// Residuals of a marker that looks as it did grow by no more than that, a share of the contrast
+// aside.
 constexpr double kMaxGrowth = 2.5, kModelError = 0.01;
 constexpr int kMaxOtherwise = 30;  // frames
 

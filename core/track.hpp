@@ -45,8 +45,8 @@ struct Track {
 
   // Whether id, or that it has none, is beyond doubt, so that nothing needs to be read anew.
   bool is_sure_of_name(int id_count) const;
-  // Whether an observation is at odds with a name that was beyond doubt: another word was read, none,
-  // or nothing that looks like a marker.
+  // Whether an observation is at odds with a name that was beyond doubt: another word was read,
+  // none, or nothing that looks like a marker.
   bool contradicts(const Observation& seen_now, int id_count) const;
   // Whether a pose was fitted with the pattern that the track is known by.
   bool is_same_print(const PoseHypothesis& pose) const;

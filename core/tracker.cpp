@@ -29,6 +29,7 @@ constexpr double kLocalReach = 2.0;  // of the search around an expected place, 
 constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
 constexpr double kSameSize = 1.6;    // ratio of sizes of one marker in neighbouring frames
 constexpr double kSureReading = 0.99;
+constexpr double kAnyTurn = 1.81;         // radians: standard deviation of a turn that may be any
 constexpr std::size_t kWorthSharing = 8;  // tracks: waking a thread takes as long as a fit or two
 
 double mean_radius(const Ellipse& e) {
@@ -208,7 +209,8 @@ std::optional<Observation> Tracker::Impl::fit(const LumaView& frame, const Track
 
 // A marker that moves as it did before is fitted where that leads, without a look for its outline.
 Attempt Tracker::Impl::follow_closely(const LumaView& frame, const Track& track, int worker) {
-  if (track.missed != 0 || !(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return {};
+  if (track.missed != 0 || track.observation.disturbed) return {};
+  if (!(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return {};
   Expectation expected;
   expected.pose = track.predicted_pose();
   const auto outline = observer.outline(expected.pose);
@@ -287,11 +289,14 @@ Attempt Tracker::Impl::follow_disturbed(const LumaView& frame, const Track& trac
   const auto outline = observer.outline(expected.pose);
   if (!outline || !inside(*outline, frame)) return {};
   expected.ellipse = *outline;
+  expected.levels = measure_levels(frame, *outline, parameters.min_contrast)
+                        .value_or(track.observation.segment.levels);
   Attempt attempt{*outline, observer.follow_disturbed(frame, *track.known_look, expected)};
   if (!attempt.seen) return attempt;
   Observation& seen = *attempt.seen;
   const IdEvidence::Name name = track.evidence.best(observer.id_count());
-  if (seen.id > 0 && seen.id != name.id) {  // what reads as another's word is not this one, half hidden
+  if (seen.id > 0 &&
+      seen.id != name.id) {  // what reads as another's word is not this one, half hidden
     attempt.seen.reset();
     return attempt;
   }
@@ -299,8 +304,8 @@ Attempt Tracker::Impl::follow_disturbed(const LumaView& frame, const Track& trac
     seen.id = name.id;
     seen.id_probability = 1.0 / observer.id_count();  // says nothing for or against
   }
-  seen.surprise_px = distance_px(expected.pose, seen.poses[0].pose, parameters.diameter_m / 2,
-                                 expected.ellipse.a);
+  seen.surprise_px =
+      distance_px(expected.pose, seen.poses[0].pose, parameters.diameter_m / 2, expected.ellipse.a);
   return attempt;
 }
 
@@ -316,7 +321,8 @@ void Tracker::Impl::follow_with_care(const LumaView& frame, Track& track) {
   if (follow(frame, track)) {
     Observation seen = observe(frame, track);
     if (!disturbed && track.contradicts(seen, observer.id_count())) {
-      if (const Attempt attempt = follow_disturbed(frame, track); attempt.seen) seen = *attempt.seen;
+      if (const Attempt attempt = follow_disturbed(frame, track); attempt.seen)
+        seen = *attempt.seen;
     }
     track.update(seen, observer.id_count());
   } else if (!disturbed) {
@@ -446,6 +452,13 @@ void Tracker::Impl::publish() {
       marker.id_probability = name.probability;
     }
     if (marker.has_pose) marker.ambiguity = std::exp(-track.pose_log_odds);
+    // The turn is that of another word than the one that the marker is known to wear.
+    if (marker.has_pose && marker.id > 0 && track.observation.id > 0 &&
+        track.observation.id != marker.id) {
+      marker.sigma_rotation = (marker.sigma_rotation.array().square() +
+                               (kAnyTurn * marker.pose.normal()).array().square())
+                                  .sqrt();
+    }
     markers.push_back(marker);
   }
 }
