@@ -34,14 +34,20 @@ bool is_marker_pattern(int left, int bright, int right) {
 }
 
 double estimate_noise(const LumaView& frame) {
+  // Few places, as each is mostly new to the cache, with some pixels of each: the median of 600
+  // differences is good to 5 %.
+  constexpr int kColumns = 12, kRows = 18, kPairs = 3, kPairSpacing = 3, kReach = 8;
   std::array<int, 256> histogram{};
   int count = 0;
-  const int step_u = std::max(3, frame.width / 64), step_v = std::max(3, frame.height / 36);
+  const int step_u = std::max(kReach, frame.width / kColumns);
+  const int step_v = std::max(3, frame.height / kRows);
   for (int v = step_v / 2; v < frame.height; v += step_v) {
-    for (int u = step_u / 2; u + 1 < frame.width; u += step_u) {
-      const int difference = std::abs(int(frame.at(u, v)) - int(frame.at(u + 1, v)));
-      ++histogram[static_cast<std::size_t>(difference)];
-      ++count;
+    for (int u = step_u / 2; u + kReach <= frame.width; u += step_u) {
+      for (int i = u; i < u + kPairs * kPairSpacing; i += kPairSpacing) {
+        const int difference = std::abs(int(frame.at(i, v)) - int(frame.at(i + 1, v)));
+        ++histogram[static_cast<std::size_t>(difference)];
+      }
+      count += kPairs;
     }
   }
   // Median of |difference|, interpolated within its grey level.
