@@ -1,5 +1,6 @@
 #include "core/line_kernels.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/simd.hpp"
@@ -8,8 +9,8 @@ namespace roundel {
 
 namespace {
 
-ROUNDEL_INLINE void average_line(const std::uint8_t* upper, const std::uint8_t* lower, int count,
-                                 std::uint8_t* out) {
+ROUNDEL_INLINE void average_some(const std::uint8_t* upper, const std::uint8_t* lower, int count,
+                                 std::uint8_t* __restrict out) {
   // Means of two that round up: what vector units have an instruction for.
   const auto mean = [](unsigned a, unsigned b) __attribute__((always_inline)) {
     return (a + b + 1) >> 1;
@@ -18,6 +19,16 @@ ROUNDEL_INLINE void average_line(const std::uint8_t* upper, const std::uint8_t* 
     const unsigned here = mean(upper[i], lower[i]);
     const unsigned next = mean(upper[i + 1], lower[i + 1]);
     out[i] = static_cast<std::uint8_t>(mean(here, next));
+  }
+}
+
+ROUNDEL_INLINE void average_line(const std::uint8_t* upper, const std::uint8_t* lower, int count,
+                                 std::uint8_t* out) {
+  constexpr int kAtOnce = 64;
+  if (count < kAtOnce) return average_some(upper, lower, count, out);
+  for (int i = 0; i < count; i += kAtOnce) {
+    i = std::min(i, count - kAtOnce);  // the last ones overlap with those before
+    average_some(upper + i, lower + i, kAtOnce, out + i);
   }
 }
 
