@@ -26,6 +26,9 @@ __attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v
   constexpr int kAhead = 2;  // rows: fills go downward first
   if (v + kAhead < frame_.height) __builtin_prefetch(luma + kAhead * frame_.row_stride);
   if (frame_.pixel_stride == 1 && count == kWord) return bits_of_64_below(luma, threshold_);
+  if (frame_.pixel_stride == 2 && u + kWord < frame_.width) {
+    return bits_of_64_below_every_second(luma, threshold_);
+  }
   std::array<std::uint8_t, kWord> bytes{};
   bytes.fill(255);  // never below a threshold
   for (int i = 0; i < count; ++i) {
