@@ -31,11 +31,10 @@ struct Track {
 
   // How it looked when its name was last beyond doubt.
   std::optional<PoseHypothesis> known_look;
-  int otherwise = 0;  // frames in a row in which it looked otherwise
-
   Observation observation;  // of this frame, when `seen`
+  int pose_index = 0;       // which of the observation's poses is held for right
+  int otherwise = 0;        // frames in a row in which it did not look as it is known
   bool seen = false;
-  int pose_index = 0;  // which of the observation's poses is held for right
 
   // Where the ellipse is expected in the current frame, before it has been seen there.
   Ellipse predicted() const;

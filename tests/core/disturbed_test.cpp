@@ -45,7 +45,7 @@ class Film {
     GreyImage& image = painter.image();
     for (int v = 0; v < image.height; ++v) {
       for (int u = 0; u < image.width; ++u) {
-        auto& pixel = image.pixels[static_cast<std::size_t>(v * image.width + u)];
+        auto& pixel = image.at(u, v);
         const double level = disturb(pixel, (u - middle.x()) / radius, (v - middle.y()) / radius);
         pixel = static_cast<std::uint8_t>(std::lround(std::min(255.0, level)));
       }
