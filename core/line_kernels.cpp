@@ -1,7 +1,6 @@
 #include "core/line_kernels.hpp"
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 #include <utility>
 
@@ -48,13 +47,13 @@ ROUNDEL_INLINE void average_every_second(const std::uint8_t* upper, const std::u
                                          int count, std::uint8_t* out) {
   int i = 0;
   for (; i + kAtOnce < count; i += kAtOnce) {
-    std::array<std::uint8_t, 2 * kAtOnce> all;
+    std::uint8_t all[2 * kAtOnce];  // NOLINT(modernize-avoid-c-arrays): written in full below
     for (int k = 0; k < 2 * kAtOnce; ++k) {
       const unsigned here = mean(upper[2 * i + k], lower[2 * i + k]);
       const unsigned next = mean(upper[2 * i + k + 2], lower[2 * i + k + 2]);
-      all[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(mean(here, next));
+      all[k] = static_cast<std::uint8_t>(mean(here, next));
     }
-    for (int k = 0; k < kAtOnce; ++k) out[i + k] = all[static_cast<std::size_t>(2 * k)];
+    for (int k = 0; k < kAtOnce; ++k) out[i + k] = all[2 * k];
   }
   average_some(upper + 2 * i, lower + 2 * i, kEverySecond, count - i, out + i);
 }

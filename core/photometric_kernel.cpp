@@ -181,7 +181,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
 }
 
 // The right side alone, and the sums of squares and weights: what parts of a marker pull at.
-template <typename V, typename Model>
+template <bool kRound, typename V, typename Model>
 ROUNDEL_INLINE void add_pulls(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums, const Model& expect) {
   constexpr int kUnknowns = kPhotometricUnknowns;
@@ -197,6 +197,7 @@ ROUNDEL_INLINE void add_pulls(const PhotometricModel& m, const PixelColumns& pix
                                                load<V>(pixels.weight + at), 0, rows);
 #pragma GCC unroll 16
       for (std::size_t k = 0; k <= kUnknowns; ++k) {
+        if (kRound && k == kTurnZ) continue;
         products[k][part] += rows[k][0] * rows[kUnknowns][0];
       }
     }
@@ -211,7 +212,7 @@ template <bool kRound, int kUnknowns, typename V, typename Model>
 ROUNDEL_INLINE void add(const PhotometricModel& m, const PixelColumns& pixels,
                         PhotometricSums& sums, const Model& expect) {
   if constexpr (kUnknowns == 0) {
-    add_pulls<V>(m, pixels, sums, expect);
+    add_pulls<kRound, V>(m, pixels, sums, expect);
   } else {
     add_pixels<kRound, kUnknowns, V>(m, pixels, sums, expect);
   }

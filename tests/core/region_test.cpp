@@ -114,6 +114,19 @@ TEST_CASE("a region that reaches the border or outgrows its limit is given up") 
   CHECK(filler.fill(image.view(), 25, 30, 100, {}) == FillResult::kTouchesEdge);
 }
 
+TEST_CASE("what outgrows its limits is given up after a line of runs, not an area") {
+  Random random(26);
+  GreyImage image = blank(600, 600, 20);
+  for (int i = 0; i < 110'000; ++i) set(image, random.integer(0, 599), random.integer(0, 599), 200);
+  set(image, 300, 300, 20);
+  constexpr int kLimit = 200;
+  RegionFiller filler;
+  REQUIRE(filler.fill(image.view(), 300, 300, 100, {kLimit, kLimit}) == FillResult::kTooLarge);
+  int runs = 0;
+  filler.for_each_run([&](const Run&) { ++runs; });
+  CHECK(runs < 2 * kLimit);  // all around, as far as the limit: 1233
+}
+
 TEST_CASE("what lies inside the outline does not change its filled moments") {
   GreyImage plain = blank(80, 80, 200), patterned = plain;
   const Ellipse outline{40.3, 38.6, 25, 17, 0.5};
