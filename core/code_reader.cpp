@@ -265,6 +265,7 @@ std::optional<CodeReading> CodeReader::read(const LumaView& frame,
   double phase = grid_phase();
   if (!fit_half_teeth(phase, levels.contrast())) return std::nullopt;
   CodeReading reading;
+  reading.spread = teeth_.sigma / teeth_.half_contrast;
   int start_half = 0;
   decode(reading, start_half);
   measure_edges(phase, reading);
