@@ -1,29 +1,44 @@
 #include "core/camera_model.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace roundel {
 
+namespace {
+
+// A lens's effect on a point, or on several at a time, and its derivative, which is symmetric.
+template <typename Number>
+struct Distorted {
+  Number x, y;
+  Number xx, xy, yy;
+};
+
+template <typename Number>
+inline Distorted<Number> distorted(const Distortion& d, const Number& x, const Number& y) {
+  const Number x2 = x * x, y2 = y * y, xy = x * y;
+  const Number r2 = x2 + y2;
+  const Number radial = 1 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
+  const Number slope = 2 * (d.k1 + r2 * (2 * d.k2 + r2 * (3 * d.k3)));  // 2 d(radial)/d(r2)
+  return {x * radial + 2 * d.p1 * xy + d.p2 * (r2 + 2 * x2),
+          y * radial + d.p1 * (r2 + 2 * y2) + 2 * d.p2 * xy,
+          radial + x2 * slope + 2 * d.p1 * y + 6 * d.p2 * x,
+          xy * slope + 2 * d.p1 * x + 2 * d.p2 * y,
+          radial + y2 * slope + 6 * d.p1 * y + 2 * d.p2 * x};
+}
+
+}  // namespace
+
 Eigen::Vector2d CameraModel::distort(const Eigen::Vector2d& normalised) const {
-  const auto& [k1, k2, p1, p2, k3] = distortion;
-  const double x = normalised.x(), y = normalised.y();
-  const double r2 = x * x + y * y;
-  const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-          y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  const auto d = distorted(distortion, normalised.x(), normalised.y());
+  return {d.x, d.y};
 }
 
 Eigen::Matrix2d CameraModel::distort_jacobian(const Eigen::Vector2d& normalised) const {
-  const auto& [k1, k2, p1, p2, k3] = distortion;
-  const double x = normalised.x(), y = normalised.y();
-  const double r2 = x * x + y * y;
-  const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double radial_slope = k1 + r2 * (2 * k2 + r2 * 3 * k3);  // d(radial)/d(r2)
-  const double cross = 2 * x * y * radial_slope + 2 * p1 * x + 2 * p2 * y;
+  const auto d = distorted(distortion, normalised.x(), normalised.y());
   Eigen::Matrix2d jacobian;
-  jacobian << radial + 2 * x * x * radial_slope + 2 * p1 * y + 6 * p2 * x, cross,  //
-      cross, radial + 2 * y * y * radial_slope + 6 * p1 * y + 2 * p2 * x;
+  jacobian << d.xx, d.xy, d.xy, d.yy;
   return jacobian;
 }
 
@@ -66,11 +81,16 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& dis
   return std::nullopt;
 }
 
+namespace {
+
+// From a guess: of the step before the last one, which the next one leaves the square of.
+constexpr int kMaxSteps = 6;
+constexpr double kTolerance = 3e-5;
+
+}  // namespace
+
 std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& distorted,
                                                       const Eigen::Vector2d& guess) const {
-  constexpr int kMaxSteps = 6;
-  constexpr double kTolerance =
-      3e-5;  // of the step before the last one: the next leaves its square
   Eigen::Vector2d x = guess;
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Matrix2d jacobian = distort_jacobian(x);
@@ -83,6 +103,29 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& dis
     }
   }
   return std::nullopt;
+}
+
+bool CameraModel::undistort(const Points<Sixteen>& wanted, Points<Sixteen>& guess) const {
+  constexpr int kCount = 16;
+  Sixteen &x = guess.x, &y = guess.y;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const auto d = distorted(distortion, x, y);
+    const Sixteen determinant = d.xx * d.yy - d.xy * d.xy;
+    const Sixteen u = (d.x - wanted.x) / determinant, v = (d.y - wanted.y) / determinant;
+    const Sixteen dx = d.yy * u - d.xy * v, dy = d.xx * v - d.xy * u;
+    x -= dx;
+    y -= dy;
+    const Sixteen moved = dx * dx + dy * dy, r2 = x * x + y * y;
+    double least = determinant[0], most = moved[0], farthest = r2[0];
+    for (int i = 1; i < kCount; ++i) {
+      least = std::min(least, determinant[i]);
+      most = std::max(most, moved[i]);
+      farthest = std::max(farthest, r2[i]);
+    }
+    if (!(least > 1e-9)) return false;
+    if (most < kTolerance * kTolerance) return before_fold(distortion, farthest);
+  }
+  return false;
 }
 
 std::optional<Eigen::Vector2d> CameraModel::normalise(const Eigen::Vector2d& pixel) const {

@@ -32,6 +32,14 @@ struct CameraModel {
   std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted,
                                            const Eigen::Vector2d& guess) const;
 
+  // The same of several points at once, x and y. False where one has no inverse.
+  template <typename Numbers>
+  struct Points {
+    Numbers x, y;
+  };
+  using Sixteen __attribute__((vector_size(16 * sizeof(double)))) = double;
+  bool undistort(const Points<Sixteen>& distorted, Points<Sixteen>& guess) const;
+
   // A pixel's normalised point, with the lens removed.
   std::optional<Eigen::Vector2d> normalise(const Eigen::Vector2d& pixel) const;
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "core/marker.hpp"
 
@@ -22,14 +24,20 @@ class EllipseRows {
     double u0, u1;  // empty when u1 < u0
   };
 
-  // What the row `dv` below the centre has inside the ellipse shrunk to `share`.
-  Span inside(double dv, double share) const {
-    const double b = mixed_ * dv;
-    const double root = b * b - square_ * (constant_ * dv * dv - share * share);
-    if (share <= 0 || root < 0) return {u_, u_ - 1};
-    const double half = std::sqrt(root) * per_square_, middle = u_ - b * per_square_;
-    return {middle - half, middle + half};
+  // What the row `dv` below the centre has inside the ellipse shrunk to each of the shares.
+  template <std::size_t kShares>
+  std::array<Span, kShares> inside(double dv, const std::array<double, kShares>& shares) const {
+    const double b = mixed_ * dv, middle = u_ - b * per_square_;
+    const double full = b * b - square_ * constant_ * dv * dv;
+    std::array<Span, kShares> spans;
+    for (std::size_t i = 0; i < kShares; ++i) {
+      const double root = shares[i] > 0 ? full + square_ * shares[i] * shares[i] : -1;
+      const double half = root < 0 ? -0.5 : std::sqrt(root) * per_square_;
+      spans[i] = {middle - half, middle + half};
+    }
+    return spans;
   }
+  Span inside(double dv, double share) const { return inside(dv, std::array{share})[0]; }
 
   // How far below and above the centre it reaches, at share 1.
   double half_height() const {

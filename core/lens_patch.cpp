@@ -17,14 +17,14 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
     return Eigen::Vector2d(column / 1.5 - 1, row / 1.5 - 1);
   };
   using Design = Eigen::Matrix<double, kPoints, kTerms>;
-  static const Eigen::Matrix<double, kTerms, kPoints> solver = [&grid] {
+  static const Design solver = [&grid] {
     Design design;
     for (int i = 0; i < kPoints; ++i) {
       const double x = grid(i).x(), y = grid(i).y();
       design.row(i) << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
     }
     const Eigen::Matrix<double, kTerms, kTerms> normal_matrix = design.transpose() * design;
-    return Eigen::Matrix<double, kTerms, kPoints>(normal_matrix.inverse() * design.transpose());
+    return Design(design * normal_matrix.inverse());
   }();
 
   LensPatch patch;
@@ -34,14 +34,23 @@ std::optional<LensPatch> LensPatch::make(const CameraModel& camera, const Eigen:
   if (!at_middle) return std::nullopt;
   const Eigen::Matrix2d slope = camera.distort_jacobian(*at_middle).inverse();
   const Eigen::Vector2d seen = camera.distort(*at_middle);
-  Eigen::Matrix<double, 2, kPoints> points;
+  CameraModel::Points<CameraModel::Sixteen> wanted{}, points{};
   for (int i = 0; i < kPoints; ++i) {
-    const Eigen::Vector2d wanted = camera.from_pixel(middle + grid(i) / patch.scale_);
-    const auto point = camera.undistort(wanted, *at_middle + slope * (wanted - seen));
-    if (!point) return std::nullopt;
-    points.col(i) = *point;
+    const Eigen::Vector2d at = camera.from_pixel(middle + grid(i) / patch.scale_);
+    const Eigen::Vector2d guess = *at_middle + slope * (at - seen);
+    wanted.x[i] = at.x();
+    wanted.y[i] = at.y();
+    points.x[i] = guess.x();
+    points.y[i] = guess.y();
   }
-  patch.coefficients_.noalias() = points * solver.transpose();
+  if (!camera.undistort(wanted, points)) return std::nullopt;
+  const Eigen::Map<const Eigen::Matrix<double, kPoints, 1>> x(
+      reinterpret_cast<const double*>(&points.x)),
+      y(reinterpret_cast<const double*>(&points.y));
+  for (int term = 0; term < kTerms; ++term) {
+    patch.coefficients_(0, term) = solver.col(term).dot(x);
+    patch.coefficients_(1, term) = solver.col(term).dot(y);
+  }
   return patch;
 }
 

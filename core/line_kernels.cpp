@@ -52,14 +52,31 @@ ROUNDEL_INLINE Bytes<kBytes> merge(const Bytes<kBytes>& a, const Bytes<kBytes>& 
 // From 16 registers, one for each block of a lane, to one, of a byte a block. The last step's
 // neighbours end side by side, so that registers eight apart are merged first.
 template <int kBytes, typename Fold>
-ROUNDEL_INLINE void reduce(Bytes<kBytes>* registers, int count, const Fold& fold,
-                           std::uint8_t* out) {
+ROUNDEL_INLINE Bytes<kBytes> reduce(Bytes<kBytes>* registers, int count, const Fold& fold) {
   for (; count > 1; count /= 2) {
     for (int k = 0; k < count / 2; ++k) {
       registers[k] = merge<kBytes>(registers[k], registers[k + count / 2], fold);
     }
   }
-  __builtin_memcpy(out, registers, kBytes);
+  return registers[0];
+}
+
+// Byte i of lane k is that of block i * lanes + k: brought into the order of blocks by interleaving
+// what is half of all lanes apart.
+template <int kBytes>
+ROUNDEL_INLINE void in_order(const Bytes<kBytes>& reduced, std::uint8_t* out) {
+  constexpr int kLanes = kBytes / 16;
+  constexpr std::make_integer_sequence<int, 16> kAll;
+  Bytes<16> lanes[kLanes], next[kLanes];  // NOLINT(modernize-avoid-c-arrays): of vector types
+  __builtin_memcpy(lanes, &reduced, kBytes);
+  for (int step = 1; step < kLanes; step *= 2) {
+    for (int k = 0; k < kLanes / 2; ++k) {
+      next[2 * k] = interleave<16, false>(lanes[k], lanes[k + kLanes / 2], kAll);
+      next[2 * k + 1] = interleave<16, true>(lanes[k], lanes[k + kLanes / 2], kAll);
+    }
+    __builtin_memcpy(lanes, next, kBytes);
+  }
+  __builtin_memcpy(out, lanes, kBytes);
 }
 
 template <int kBytes>
@@ -75,22 +92,19 @@ ROUNDEL_INLINE void bound_line(const std::uint8_t* line, std::size_t blocks, std
   };
   constexpr std::make_integer_sequence<int, kBytes> kAll;
   for (std::size_t b = 0; b < blocks; b += 16 * kLanes) {
-    const std::uint8_t* from = line + b * kBlock;
+    // As they lie in memory: block i is in lane i % kLanes of register i / kLanes.
     V lows[8], highs[8];  // NOLINT(modernize-avoid-c-arrays): of vector types
     for (int k = 0; k < 8; ++k) {
       V first, second;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const std::uint8_t* block = from + (16 * lane + k) * kBlock;
-        __builtin_memcpy(reinterpret_cast<char*>(&first) + 16 * lane, block, 16);
-        __builtin_memcpy(reinterpret_cast<char*>(&second) + 16 * lane, block + 8 * kBlock, 16);
-      }
+      __builtin_memcpy(&first, line + b * kBlock + k * kBytes, kBytes);
+      __builtin_memcpy(&second, line + b * kBlock + (k + 8) * kBytes, kBytes);
       const V left = interleave<kBytes, false>(first, second, kAll);
       const V right = interleave<kBytes, true>(first, second, kAll);
       lows[k] = least(left, right);
       highs[k] = greatest(left, right);
     }
-    reduce<kBytes>(lows, 8, least, low + b);
-    reduce<kBytes>(highs, 8, greatest, high + b);
+    in_order<kBytes>(reduce<kBytes>(lows, 8, least), low + b);
+    in_order<kBytes>(reduce<kBytes>(highs, 8, greatest), high + b);
   }
 }
 
@@ -113,17 +127,17 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
   const auto greatest = [](const V& a, const V& b) __attribute__((always_inline)) {
     return a > b ? a : b;
   };
-  const V none{}, all = ~none, wanted = none + contrast;
+  const V wanted = V{} + contrast;
   for (std::size_t i = 0; i < blocks; i += kBytes) {
     const V here_low = load(low + i + 1), here_high = load(high + i + 1);
     const V l = least(least(load(low + i), here_low), load(low + i + 2));
     const V h = greatest(greatest(load(high + i), here_high), load(high + i + 2));
     const V half = (l | h) - ((l ^ h) >> 1);  // rounded up
-    const V contrasted = h - l >= wanted ? all : none;
+    const V contrasted = V(h - l >= wanted);
     store(half, looks.threshold + i);
     store((here_low & here_high) + ((here_low ^ here_high) >> 1), looks.middle + i);
     store(contrasted, looks.contrasted + i);
-    store(here_low < half ? (here_high >= half ? contrasted : none) : none, looks.crossing + i);
+    store(contrasted & V(here_low < half) & V(here_high >= half), looks.crossing + i);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "core/marker_pixels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,7 @@ namespace {
 constexpr double kInnerLimit = 0.8;  // pixels inside see the inner edges, outside the outer rim
 constexpr double kMaxOutside = 0.2;  // of the radius: inside the white margin
 constexpr int kMaxPixels = 6000;     // larger markers are thinned out
+constexpr int kChunk = 16;           // pixels that are copied at once
 
 }  // namespace
 
@@ -26,8 +28,9 @@ struct MarkerPixels::Row {
   int width;  // pixels
 };
 
+// Room for so many more, the last block's filling and what a chunk overwrites.
 void MarkerPixels::Columns::make_room(int more) {
-  const int total = used + more + kPixelBlock;
+  const int total = used + more + kPixelBlock + 2 * kChunk;
   const auto needed = static_cast<std::size_t>(total);
   if (x.size() >= needed) return;
   for (auto* column : {&x, &y, &grey, &weight}) column->resize(2 * needed);
@@ -59,31 +62,33 @@ PixelColumns MarkerPixels::Columns::view() const {
 void MarkerPixels::take(const Row& row, int u0, int u1, int stride, Columns& columns) {
   if (u1 < u0) return;
   const int count = stride == 1 ? u1 - u0 + 1 : (u1 - u0) / stride + 1;
-  columns.make_room(count);
   const auto start = static_cast<std::size_t>(columns.used);
-  // By groups of four, which overwrite the room behind: a span is a few pixels long.
+  columns.used += count;
+  // By chunks that overwrite the room behind: most spans are shorter than one. Vectors of four are
+  // what every processor has.
   using Float4 = float __attribute__((vector_size(16)));
   const auto between = static_cast<float>(stride);
-  Float4 du = static_cast<float>(u0 - row.centre_u) + Float4{0, 1, 2, 3} * between;
+  const auto first = static_cast<float>(u0 - row.centre_u);
+  Float4 du = first + Float4{0, 1, 2, 3} * between;
   const Float4 dv = Float4{} + row.dv;
   float* x = columns.x.data() + start;
   float* y = columns.y.data() + start;
-  for (int i = 0; i < count; i += 4) {
-    __builtin_memcpy(x + i, &du, sizeof du);
-    __builtin_memcpy(y + i, &dv, sizeof dv);
-    du += 4 * between;
+  for (int i = 0; i < count; i += kChunk) {
+    for (int quarter = 0; quarter < kChunk; quarter += 4) {
+      __builtin_memcpy(x + i + quarter, &du, sizeof du);
+      __builtin_memcpy(y + i + quarter, &dv, sizeof dv);
+      du += 4 * between;
+    }
   }
   const std::uint8_t* from = row.luma + u0 * row.pixel_stride;
   const std::ptrdiff_t step = stride * row.pixel_stride;
   std::uint8_t* to = columns.luma.data() + start;
-  constexpr int kChunk = 16;
   if (step == 1 && u0 + (count + kChunk - 1) / kChunk * kChunk <= row.width) {
-    // By chunks as well, while they stay within the row.
+    // While the chunks stay within the row.
     for (int i = 0; i < count; i += kChunk) __builtin_memcpy(to + i, from + i, kChunk);
   } else {
     for (int i = 0; i < count; ++i, from += step) to[i] = *from;
   }
-  columns.used += count;
 }
 
 bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
@@ -114,12 +119,13 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
   for (int v = v0; v <= v1; v += stride) {
     const double dv = v - ellipse.v;
     const Row row{frame.row(v), frame.pixel_stride, ellipse.u, static_cast<float>(dv), frame.width};
-    const auto take_band = [&](double low, double high, Columns& columns) {
-      const EllipseRows::Span whole = rows.inside(dv, high);
+    const auto spans = rows.inside(dv, std::array{rim_high, rim_low, inner_high, inner_low});
+    const auto take_band = [&](const EllipseRows::Span& whole, const EllipseRows::Span& hole,
+                               Columns& columns) {
       if (whole.u1 < whole.u0) return;
       const int first = std::max(0, ceil_int(whole.u0));
       const int last = std::min(last_u, floor_int(whole.u1));
-      const EllipseRows::Span hole = rows.inside(dv, low);
+      columns.make_room(std::max(0, last - first) / stride + 1);
       if (hole.u1 < hole.u0) {
         take(row, first, last, stride, columns);
         return;
@@ -129,8 +135,8 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
       take(row, first, before, stride, columns);
       take(row, std::max(after, before + 1), last, stride, columns);
     };
-    take_band(rim_low, rim_high, outer_);
-    take_band(inner_low, inner_high, inner_);
+    take_band(spans[0], spans[1], outer_);
+    take_band(spans[2], spans[3], inner_);
   }
   if (outer_.used < 2 * kPhotometricUnknowns || inner_.used == 0) return false;
   outer_.finish(*patch, response);

@@ -14,6 +14,12 @@ namespace {
 // marker tilted by 75 degrees at the worst angle. Chords a little off the middle are shorter.
 constexpr double kMaxBoxToChord = 2.4;
 
+// A region that outgrew a seed's limits is tried again only if another row allows it as much more,
+// or takes as much less for dark, as a share of the contrast. The row through a marker's middle
+// allows 1.17 times what the most askew one needs.
+constexpr double kLimitGrowth = 1.10;
+constexpr int kThresholdShare = 8;
+
 // A marker's column is at most four times as long as its row when it is tilted by 75 degrees; from
 // the middle of the bright run either way it is less than three quarters of that.
 constexpr int kMaxReachToChord = 3;
@@ -62,11 +68,15 @@ int fitting_column(const LumaView& frame, const Seed& seed, int max_diameter) {
   const int step = std::max(1, seed.extent / kThinnestRing);
   const ColumnWalk up(frame, seed.bright_u, seed.v, -1, seed.threshold, reach);
   const ColumnWalk down(frame, seed.bright_u, seed.v, 1, seed.threshold, reach);
-  const int up_bright = up.change(0, false, step), down_bright = down.change(0, false, step);
-  if (up_bright == up.length() || down_bright == down.length()) return 0;
+  // Up first: these rows have been read before, those below are yet to come into the cache.
+  const int up_bright = up.change(0, false, step);
+  if (up_bright == up.length()) return 0;
   const int up_end = up.change(up_bright, true, step);
+  if (up_end == up.length()) return 0;
+  const int down_bright = down.change(0, false, step);
+  if (down_bright == down.length()) return 0;
   const int down_end = down.change(down_bright, true, step);
-  if (up_end == up.length() || down_end == down.length()) return 0;
+  if (down_end == down.length()) return 0;
   if (!is_marker_pattern(up_end - up_bright, up_bright + down_bright, down_end - down_bright)) {
     return 0;
   }
@@ -116,8 +126,9 @@ bool MarkerSearch::is_hopeless(const Seed& seed, const RegionFiller::Limits& lim
   return has_claim(seed.u, seed.v, [&](const Claim& claim) {
     if (claim.owner != Owner::kTooLarge) return false;
     const GivenUp& fill = given_up_[static_cast<std::size_t>(claim.fill)];
-    return seed.threshold >= fill.threshold && limits.max_width <= fill.limits.max_width &&
-           limits.max_height <= fill.limits.max_height;
+    return seed.threshold + contrast_ / kThresholdShare >= fill.threshold &&
+           limits.max_width <= kLimitGrowth * fill.limits.max_width &&
+           limits.max_height <= kLimitGrowth * fill.limits.max_height;
   });
 }
 
@@ -160,20 +171,18 @@ Verdict MarkerSearch::examine(const LumaView& frame, int u, int v, int threshold
 
 void MarkerSearch::search(const LumaView& frame, const Box& area, int spacing, std::size_t limit,
                           std::vector<Segment>& found) {
-  const int u0 = std::max(0, area.u0), u1 = std::min(frame.width - 1, area.u1);
-  const int last_v = std::min(frame.height - 2, area.v1);
-  for (int v = std::max(0, area.v0); v <= last_v; v += spacing) {
-    for (const Seed& seed :
-         scanner_.scan(frame, v, u0, u1, contrast_, parameters_.max_diameter_px)) {
+  scanner_.start(frame, area, spacing, contrast_, parameters_.max_diameter_px);
+  while (scanner_.next()) {
+    for (const Seed& seed : scanner_.seeds()) {
       if (found.size() >= limit) return;
-      if (is_claimed(seed.u, v) || is_claimed(seed.bright_u, v)) continue;
-      if (is_owned(seed.u, v, Owner::kNoMarker)) continue;
+      if (is_claimed(seed.u, seed.v) || is_claimed(seed.bright_u, seed.v)) continue;
+      if (is_owned(seed.u, seed.v, Owner::kNoMarker)) continue;
       const int column = fitting_column(frame, seed, parameters_.max_diameter_px);
       if (column == 0) continue;
       const RegionFiller::Limits limits{static_cast<int>(kMaxBoxToChord * seed.extent) + 4,
                                         static_cast<int>(kMaxBoxToChord * column) + 4};
       if (is_hopeless(seed, limits)) continue;
-      const Verdict verdict = examine(frame, seed.u, v, seed.threshold, limits);
+      const Verdict verdict = examine(frame, seed.u, seed.v, seed.threshold, limits);
       if (verdict == Verdict::kAccepted) {
         found.push_back(finder_.segment());
       } else if (verdict == Verdict::kTooLarge) {

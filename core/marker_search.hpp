@@ -49,8 +49,8 @@ class MarkerSearch {
     Owner owner;
     std::int32_t fill;  // of kTooLarge: which of the fills given up
   };
-  // A fill that was given up. Another one in the same region, of a threshold not below and limits
-  // not above, would end likewise.
+  // A fill that was given up. Another one in the same region, of a threshold not much below and
+  // limits not much above, would end likewise.
   struct GivenUp {
     int threshold = 0;
     RegionFiller::Limits limits;

@@ -1,9 +1,10 @@
 #include "core/photometric_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "core/cholesky.hpp"
 
 namespace roundel {
 
@@ -82,7 +83,8 @@ struct PhotometricFit::Step {
   double mean_square_after = 0;  // to second order
   bool last = false;
   PoseCovariance inverse = PoseCovariance::Zero();  // of the normal matrix, marker axes; when last
-  // The same for all unknowns: by how much a pull at one of them moves the pose.
+  // The same for all unknowns, where parts are weighed: by how much a pull at one of them moves the
+  // pose.
   Eigen::Matrix<double, kUnknowns, 6> columns = Eigen::Matrix<double, kUnknowns, 6>::Zero();
 };
 
@@ -201,7 +203,7 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
       add(kInner, 0, kPinned);
     }
   }
-  const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> solver(normal_matrix);
+  const Cholesky<kCount> solver(normal_matrix);
   step.change.template head<kCount>() = solver.solve(right_side);
   const auto change = step.change.template head<kCount>();
   // What the step takes off the residuals alone, without what was known beforehand.
@@ -224,10 +226,13 @@ PhotometricFit::Step PhotometricFit::solve(const PhotometricState& state, const 
   const int least = rough_only ? plan.min_steps : std::max(plan.min_steps, plan.rough_steps + 1);
   step.last = (settled && taken >= least) || taken >= plan.max_steps;
   if (step.last) {
-    const Eigen::Matrix<double, kCount, 6> columns =
-        solver.solve(Eigen::Matrix<double, kCount, 6>::Identity());
-    step.inverse = columns.template topRows<6>();
-    step.columns.template topRows<kCount>() = columns;
+    step.inverse = solver.template inverse_of_first<6>();
+    if (plan.weigh_parts) {
+      for (int k = 0; k < 6; ++k) {
+        step.columns.col(k).template head<kCount>() =
+            solver.solve(Eigen::Matrix<double, kCount, 1>::Unit(k));
+      }
+    }
   }
   return step;
 }
@@ -263,10 +268,16 @@ PhotometricState PhotometricFit::advanced(const PhotometricState& state, const V
 PoseCovariance PhotometricFit::to_camera_axes(const PhotometricState& state,
                                               const PoseCovariance& inverse) const {
   const Eigen::Matrix3d axes = state.pose.orientation.toRotationMatrix();
-  PoseCovariance to_camera = PoseCovariance::Zero();
-  to_camera.topLeftCorner<3, 3>() = radius_m_ * axes;
-  to_camera.bottomRightCorner<3, 3>() = axes;
-  return to_camera * inverse * to_camera.transpose();
+  const Eigen::Matrix3d moved = radius_m_ * axes;
+  const auto block = [&](int row, int column) {
+    return Eigen::Matrix3d(inverse.block<3, 3>(row, column));
+  };
+  PoseCovariance in_camera;
+  in_camera.block<3, 3>(0, 0) = moved * block(0, 0) * moved.transpose();
+  in_camera.block<3, 3>(3, 0) = axes * block(3, 0) * moved.transpose();
+  in_camera.block<3, 3>(0, 3) = in_camera.block<3, 3>(3, 0).transpose().eval();
+  in_camera.block<3, 3>(3, 3) = axes * block(3, 3) * axes.transpose();
+  return in_camera;
 }
 
 // Covariance of the pose by how much the parts of the marker disagree about it: what each of them

@@ -1,6 +1,6 @@
 #include "core/photometric_kernel.hpp"
 
-#include <utility>
+#include <algorithm>
 
 #include "core/photometric_edges.hpp"
 #include "core/simd.hpp"
@@ -14,13 +14,13 @@ using photometric::Expected;
 using photometric::PlanePoint;
 using simd::splat;
 
-// Rows of the linearised equations of a block of pixels, weighted; the residuals are the last
-// column. One group of pixels after the other, so that a sum is taken to memory once for several
-// groups.
+// Rows of the linearised equations of some pixels, weighted; the residuals are the last column. So
+// many groups of pixels at once that a sum is taken to memory once for all of them.
 template <typename V>
 constexpr std::size_t kGroups = kPixelBlock / simd::kLanesOf<V>;
+constexpr std::size_t kBlocksAtOnce = 4;
 template <int kUnknowns, typename V>
-using Rows = std::array<std::array<V, kGroups<V>>, kUnknowns + 1>;
+using Rows = std::array<std::array<V, kBlocksAtOnce * kGroups<V>>, kUnknowns + 1>;
 
 template <typename V>
 ROUNDEL_INLINE V load(const float* from) {
@@ -38,10 +38,13 @@ ROUNDEL_INLINE V fill_rows(const PhotometricModel& m, const PlanePoint<V>& p, co
   const V print = m.dark + m.contrast * e.bright;
   const V residual = (grey - light * print) * root_weight;
   const V size = simd::abs<V>(residual);
-  const V trust =
-      simd::select<V>(size > m.robust_scale, m.robust_scale / (size + 1e-9F), splat<V>(1));
-  const V kept = simd::select<V>(size > m.outlier, splat<V>(0), trust);
-  const V root_trust = simd::sqrt<V>(kept);
+  V kept = splat<V>(1), root_trust = kept;
+  if (simd::any(size > m.robust_scale)) {
+    const V trust =
+        simd::select<V>(size > m.robust_scale, m.robust_scale / (size + 1e-9F), splat<V>(1));
+    kept = simd::select<V>(size > m.outlier, splat<V>(0), trust);
+    root_trust = simd::sqrt<V>(kept);
+  }
   const V weight = root_weight * root_trust;
 
   const V gain = weight * light * m.contrast;
@@ -79,56 +82,99 @@ ROUNDEL_INLINE V fill_rows(const PhotometricModel& m, const PlanePoint<V>& p, co
 // Sixteen sums of every sixteenth pixel each, however many pixels are worked on at once: in one
 // register, or in two.
 template <typename V>
-struct Sums16 {
-  std::array<V, 16 / simd::kLanesOf<V>> parts{};
+constexpr std::size_t kParts = 16 / simd::kLanesOf<V>;
+template <typename V>
+using Sums16 = std::array<V, kParts<V>>;
 
-  // Adds the products of two rows of a block.
-  ROUNDEL_INLINE void add(const std::array<V, kGroups<V>>& a, const std::array<V, kGroups<V>>& b) {
-    constexpr std::size_t kParts = 16 / simd::kLanesOf<V>;
-    static_assert(kGroups<V> == 2 * kParts);
-    for (std::size_t k = 0; k < kParts; ++k) {
-      parts[k] += a[k] * b[k] + a[k + kParts] * b[k + kParts];
-    }
+template <typename V>
+ROUNDEL_INLINE float total(const Sums16<V>& sums) {
+  if constexpr (kParts<V> == 1) {
+    return simd::sum(simd::lower_half(sums[0]) + simd::upper_half(sums[0]));
+  } else {
+    return simd::sum(sums[0] + sums[1]);
   }
-  ROUNDEL_INLINE float total() const {
-    if constexpr (simd::kLanesOf<V> == 16) {
-      return simd::sum(simd::lower_half(parts[0]) + simd::upper_half(parts[0]));
+}
+
+constexpr std::size_t entry(std::size_t row, std::size_t column) {
+  return row * (row + 1) / 2 + column;
+}
+
+// Products of the rows' pairs: the lower triangle, row by row.
+template <std::size_t kColumns, typename V>
+using Products = std::array<Sums16<V>, kColumns*(kColumns + 1) / 2>;
+
+// Adds the products of some neighbouring rows and columns: as many as have their sums in registers.
+constexpr std::size_t kTileRows = 4, kTileColumns = 3;
+template <std::size_t kFirstRow, std::size_t kFirstColumn, int kUnknowns, typename V>
+ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
+                             Products<kUnknowns + 1, V>& products) {
+  constexpr std::size_t kColumns = kUnknowns + 1;
+  constexpr std::size_t kEndRow = std::min(kFirstRow + kTileRows, kColumns);
+  const auto each = [](auto&& work) __attribute__((always_inline)) {
+#pragma GCC unroll 4
+    for (std::size_t r = kFirstRow; r < kEndRow; ++r) {
+#pragma GCC unroll 3
+      for (std::size_t c = kFirstColumn; c < kFirstColumn + kTileColumns; ++c) {
+        if (c <= r) work(r, c, (r - kFirstRow) * kTileColumns + c - kFirstColumn);
+      }
+    }
+  };
+  for (std::size_t part = 0; part < kParts<V>; ++part) {
+    std::array<V, kTileRows * kTileColumns> sums;
+    each([&](std::size_t r, std::size_t c, std::size_t k)
+             __attribute__((always_inline)) { sums[k] = products[entry(r, c)][part]; });
+#pragma GCC unroll 1
+    for (std::size_t group = part; group < groups; group += kParts<V>) {
+      each([&](std::size_t r, std::size_t c, std::size_t k)
+               __attribute__((always_inline)) { sums[k] += rows[r][group] * rows[c][group]; });
+    }
+    each([&](std::size_t r, std::size_t c, std::size_t k)
+             __attribute__((always_inline)) { products[entry(r, c)][part] = sums[k]; });
+  }
+}
+
+template <int kUnknowns, typename V, std::size_t kFirstRow = 0, std::size_t kFirstColumn = 0>
+ROUNDEL_INLINE void add_products(const Rows<kUnknowns, V>& rows, std::size_t groups,
+                                 Products<kUnknowns + 1, V>& products) {
+  if constexpr (kFirstRow <= kUnknowns) {
+    add_tile<kFirstRow, kFirstColumn, kUnknowns, V>(rows, groups, products);
+    constexpr std::size_t kNextColumn = kFirstColumn + kTileColumns;
+    if constexpr (kNextColumn < std::min<std::size_t>(kFirstRow + kTileRows, kUnknowns + 1)) {
+      add_products<kUnknowns, V, kFirstRow, kNextColumn>(rows, groups, products);
     } else {
-      return simd::sum(parts[0] + parts[1]);
+      add_products<kUnknowns, V, kFirstRow + kTileRows, 0>(rows, groups, products);
     }
   }
-};
+}
 
 template <int kUnknowns, typename V, typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr std::size_t kColumns = kUnknowns + 1;
-  std::array<Sums16<V>, kColumns*(kColumns + 1) / 2> products{};
-  Sums16<V> weights;
+  Products<kColumns, V> products{};
+  Sums16<V> weights{};
   Rows<kUnknowns, V> rows;
-  std::array<V, kGroups<V>> trust{}, ones{};
-  ones.fill(splat<V>(1));
-  for (int i = 0; i < pixels.count; i += pixels.every * kPixelBlock) {
-    for (std::size_t group = 0; group < kGroups<V>; ++group) {
-      const int at = i + static_cast<int>(group) * simd::kLanesOf<V>;
-      const auto p = photometric::plane_point<V>(m, load<V>(pixels.x + at), load<V>(pixels.y + at));
-      trust[group] = fill_rows<kUnknowns, V>(m, p, expect(p), load<V>(pixels.grey + at),
-                                             load<V>(pixels.weight + at), group, rows);
+  for (int i = 0; i < pixels.count;) {
+    std::size_t groups = 0;
+    for (; groups < kBlocksAtOnce * kGroups<V> && i < pixels.count;
+         i += pixels.every * kPixelBlock) {
+      for (int in_block = 0; in_block < kPixelBlock; in_block += simd::kLanesOf<V>, ++groups) {
+        const int at = i + in_block;
+        const auto p =
+            photometric::plane_point<V>(m, load<V>(pixels.x + at), load<V>(pixels.y + at));
+        weights[groups % kParts<V>] += fill_rows<kUnknowns, V>(
+            m, p, expect(p), load<V>(pixels.grey + at), load<V>(pixels.weight + at), groups, rows);
+      }
     }
-    weights.add(trust, ones);
-    std::size_t at = 0;
-    for (std::size_t r = 0; r < kColumns; ++r) {
-      const auto row = rows[r];
-      for (std::size_t c = 0; c <= r; ++c, ++at) products[at].add(row, rows[c]);
-    }
+    add_products<kUnknowns, V>(rows, groups, products);
   }
-  constexpr std::size_t kEntries = kUnknowns * (kUnknowns + 1) / 2;
-  for (std::size_t k = 0; k < kEntries; ++k) sums.normal_matrix[k] += products[k].total();
+  constexpr std::size_t kEntries = entry(kUnknowns, 0);
+  for (std::size_t k = 0; k < kEntries; ++k) sums.normal_matrix[k] += total<V>(products[k]);
   for (std::size_t k = 0; k < kUnknowns; ++k) {
-    sums.right_side[k] += products[kEntries + k].total();
+    sums.right_side[k] += total<V>(products[kEntries + k]);
   }
-  sums.squares += products.back().total();
-  sums.weights += weights.total();
+  sums.squares += total<V>(products.back());
+  sums.weights += total<V>(weights);
 }
 
 template <int kUnknowns, bool kBoxed, typename V>

@@ -33,8 +33,9 @@ __attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v
 }
 
 inline RegionFiller::Word& RegionFiller::word(int column, int v) {
-  Word& word = words_[static_cast<std::size_t>(v) * static_cast<std::size_t>(words_a_row_) +
-                      static_cast<std::size_t>(column)];
+  Word& word =
+      words_[static_cast<std::size_t>(v - first_row_) * static_cast<std::size_t>(columns_) +
+             static_cast<std::size_t>(column - first_column_)];
   if (word.stamp != stamp_) [[unlikely]] {
     word = {classify(column, v), stamp_};
   }
@@ -53,14 +54,14 @@ FillResult RegionFiller::append(int u, int v) {
   const int last = above != 0 ? std::countr_zero(above) - 1 : kWord - 1;
   here->dark &= ~bits_between(first, last);
   int u0 = column * kWord + first, u1 = column * kWord + last;
-  for (int left = column; left > 0 && u0 == left * kWord;) {
+  for (int left = column; left > first_column_ && u0 == left * kWord;) {
     Word& next = word(--left, v);
     const int length = std::countl_one(next.dark);
     if (length == 0) break;
     next.dark &= ~bits_between(kWord - length, kWord - 1);
     u0 -= length;
   }
-  while (u1 % kWord == kWord - 1 && ++column < words_a_row_) {
+  while (u1 % kWord == kWord - 1 && ++column < first_column_ + columns_) {
     Word& next = word(column, v);
     const int length = std::countr_one(next.dark);
     if (length == 0) break;
@@ -78,6 +79,7 @@ FillResult RegionFiller::append(int u, int v) {
     return FillResult::kTooLarge;
   }
   runs_.push_back({v, u0, u1});
+  open_.push_back({v, u0, u1});
   return FillResult::kComplete;
 }
 
@@ -103,8 +105,10 @@ FillResult RegionFiller::grow(int u, int v) {
   }
   box_ = {u, v, u, v};
   FillResult result = append(u, v);
-  for (std::size_t next = 0; next < runs_.size() && result == FillResult::kComplete; ++next) {
-    const Run run = runs_[next];
+  // The newest first: what grows beyond the limits does so soon, in a straight line.
+  while (!open_.empty() && result == FillResult::kComplete) {
+    const Run run = open_.back();
+    open_.pop_back();
     result = append_neighbours(run, run.v - 1);
     if (result == FillResult::kComplete) result = append_neighbours(run, run.v + 1);
   }
@@ -130,11 +134,10 @@ void RegionFiller::summarise(int u, int v) {
 
 FillResult RegionFiller::fill(const LumaView& frame, int u, int v, int threshold,
                               const Limits& limits) {
-  const int words_a_row = (frame.width + kWord - 1) / kWord;
-  const auto words = static_cast<std::size_t>(words_a_row) * static_cast<std::size_t>(frame.height);
-  if (words_a_row != words_a_row_ || words_.size() < words) {
+  const auto words = static_cast<std::size_t>((frame.width + kWord - 1) / kWord) *
+                     static_cast<std::size_t>(frame.height);
+  if (words_.size() < words) {
     words_.assign(words, Word{});
-    words_a_row_ = words_a_row;
     spans_.reserve(static_cast<std::size_t>(frame.height));
     stamp_ = 0;
   }
@@ -145,7 +148,12 @@ FillResult RegionFiller::fill(const LumaView& frame, int u, int v, int threshold
   frame_ = frame;
   threshold_ = static_cast<std::uint8_t>(std::clamp(threshold, 0, 255));
   limits_ = limits;
+  // A run within the limits has neighbours a pixel further on; one that ends there is beyond them.
+  first_row_ = std::max(0, v - limits.max_height);
+  first_column_ = std::max(0, u - limits.max_width) / kWord;
+  columns_ = std::min(frame.width - 1, u + limits.max_width) / kWord - first_column_ + 1;
   runs_.clear();
+  open_.clear();
   const FillResult result = grow(u, v);
   if (result == FillResult::kComplete) summarise(u, v);
   return result;

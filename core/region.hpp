@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/box.hpp"
 #include "core/luma_view.hpp"
 #include "core/moments.hpp"
 
@@ -12,13 +13,6 @@ namespace roundel {
 // Pixels u0 ... u1 of row v, both ends included.
 struct Run {
   int v = 0, u0 = 0, u1 = 0;
-};
-
-// A pixel rectangle, all four sides included.
-struct Box {
-  int u0 = 0, v0 = 0, u1 = 0, v1 = 0;
-  int width() const { return u1 - u0 + 1; }
-  int height() const { return v1 - v0 + 1; }
 };
 
 enum class FillResult {
@@ -81,9 +75,12 @@ class RegionFiller {
   Limits limits_;
   Box box_;
 
-  std::vector<Run> runs_;    // in order of discovery; also the work list
-  std::vector<Word> words_;  // row by row
-  int words_a_row_ = 0;
+  std::vector<Run> runs_;  // in order of discovery
+  std::vector<Run> open_;  // of these, what has not been looked around yet
+  // What the limits let a fill reach, row by row: packed, so that a marker's words fit into the
+  // nearest cache.
+  std::vector<Word> words_;
+  int first_row_ = 0, first_column_ = 0, columns_ = 0;
   std::vector<Run> spans_;
   std::uint32_t stamp_ = 0;
   Region region_;

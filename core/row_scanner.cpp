@@ -80,40 +80,84 @@ std::uint64_t flag_bits(const std::uint8_t* flags) {
 
 }  // namespace
 
-void RowScanner::smooth(const LumaView& frame, int v, int u0, int u1) {
-  const int count = u1 - u0 + 1;
-  blocks_ = static_cast<std::size_t>((count + kBlock - 1) / kBlock);
+void RowScanner::start(const LumaView& frame, const Box& area, int spacing, int contrast,
+                       int max_extent) {
+  frame_ = frame;
+  u0_ = std::max(0, area.u0);
+  u1_ = std::min(frame.width - 1, area.u1);
+  v_ = std::max(0, area.v0);
+  last_v_ = std::min(frame.height - 2, area.v1);
+  spacing_ = spacing;
+  contrast_ = contrast;
+  max_extent_ = max_extent;
+  seeds_.clear();
+  constexpr int kNarrowest = 9;
+  const int width = u1_ - u0_ + 1;
+  if (width < kNarrowest) last_v_ = -1;
+  if (v_ > last_v_) return;
+  blocks_ = static_cast<std::size_t>((width + kBlock - 1) / kBlock);
   const std::size_t padded = (blocks_ + kBlocksAtOnce - 1) / kBlocksAtOnce * kBlocksAtOnce;
-  line_.resize(padded * kBlock);
-  for (auto* bytes : {&threshold_, &middle_, &contrasted_, &crossing_}) bytes->resize(padded);
-  block_min_.resize(padded + 2);
-  block_max_.resize(padded + 2);
-  std::uint8_t* out = line_.data();
-  const std::uint8_t* upper = frame.row(v) + u0 * frame.pixel_stride;
-  const std::uint8_t* lower = frame.row(v + 1) + u0 * frame.pixel_stride;
-  if (frame.pixel_stride == 1) {
-    line_kernels().average(upper, lower, count - 1, out);
-  } else if (frame.pixel_stride == 2) {
-    average_apart(upper, lower, std::integral_constant<std::ptrdiff_t, 2>{}, count - 1, out);
-  } else {
-    average_apart(upper, lower, frame.pixel_stride, count - 1, out);
+  for (Line& line : lines_) {
+    line.levels.resize(padded * kBlock);
+    line.block_min.resize(padded + 2);
+    line.block_max.resize(padded + 2);
   }
-  // The last pixel has no right neighbour; the rest only fills the last blocks.
-  const std::uint8_t last = count > 1 ? out[count - 2] : *upper;
-  std::fill(line_.begin() + (count - 1), line_.end(), last);
+  for (auto* bytes : {&threshold_, &middle_, &contrasted_, &crossing_}) bytes->resize(padded);
+  prepare(lines_[prepared_], v_);
 }
 
-void RowScanner::find_runs(int contrast) {
+bool RowScanner::next() {
+  if (v_ > last_v_) return false;
+  const Line& line = lines_[prepared_];
+  prepared_ = 1 - prepared_;
+  v_ += spacing_;
+  if (v_ <= last_v_) prepare(lines_[prepared_], v_);
+  if (v_ + spacing_ <= last_v_) prefetch(v_ + spacing_);
+  find_runs(line);
+  find_seeds(line);
+  return true;
+}
+
+// The camera's driver has just written the picture, mostly not into this processor's cache.
+void RowScanner::prefetch(int v) const {
+  constexpr std::ptrdiff_t kCacheLine = 64;
+  const std::ptrdiff_t bytes = (u1_ - u0_ + 1) * frame_.pixel_stride;
+  for (const int row : {v, v + 1}) {
+    const std::uint8_t* from = frame_.row(row) + u0_ * frame_.pixel_stride;
+    for (std::ptrdiff_t i = 0; i < bytes; i += kCacheLine) __builtin_prefetch(from + i);
+  }
+}
+
+void RowScanner::prepare(Line& line, int v) {
   const LineKernels& kernels = line_kernels();
-  const std::size_t padded = line_.size() / kBlock;
-  kernels.bound(line_.data(), padded, block_min_.data() + 1, block_max_.data() + 1);
+  line.v = v;
+  const int count = u1_ - u0_ + 1;
+  std::uint8_t* out = line.levels.data();
+  const std::uint8_t* upper = frame_.row(v) + u0_ * frame_.pixel_stride;
+  const std::uint8_t* lower = frame_.row(v + 1) + u0_ * frame_.pixel_stride;
+  if (frame_.pixel_stride == 1) {
+    kernels.average(upper, lower, count - 1, out);
+  } else if (frame_.pixel_stride == 2) {
+    average_apart(upper, lower, std::integral_constant<std::ptrdiff_t, 2>{}, count - 1, out);
+  } else {
+    average_apart(upper, lower, frame_.pixel_stride, count - 1, out);
+  }
+  // The last pixel has no right neighbour; the rest only fills the last blocks.
+  std::fill(line.levels.begin() + (count - 1), line.levels.end(), out[count - 2]);
+
+  const std::size_t padded = line.levels.size() / kBlock;
+  kernels.bound(out, padded, line.block_min.data() + 1, line.block_max.data() + 1);
   // A guard on both sides, so that every block has two neighbours.
-  block_min_.front() = block_min_[1];
-  block_max_.front() = block_max_[1];
-  block_min_.back() = block_min_[padded];
-  block_max_.back() = block_max_[padded];
-  kernels.judge(block_min_.data(), block_max_.data(), padded, static_cast<std::uint8_t>(contrast),
-                {threshold_.data(), middle_.data(), contrasted_.data(), crossing_.data()});
+  for (auto* bounds : {&line.block_min, &line.block_max}) {
+    bounds->front() = (*bounds)[1];
+    bounds->back() = (*bounds)[padded];
+  }
+}
+
+void RowScanner::find_runs(const Line& line) {
+  line_kernels().judge(line.block_min.data(), line.block_max.data(), threshold_.size(),
+                       static_cast<std::uint8_t>(contrast_),
+                       {threshold_.data(), middle_.data(), contrasted_.data(), crossing_.data()});
 
   run_ends_.clear();
   first_run_dark_ = false;
@@ -151,7 +195,7 @@ void RowScanner::find_runs(int contrast) {
       const int start = static_cast<int>(block) * kBlock;
       threshold = threshold_[block];
       if (crossing_[block] != 0) {
-        const std::uint32_t bits = bits_below(line_.data() + start, threshold);
+        const std::uint32_t bits = bits_below(line.levels.data() + start, threshold);
         // A set bit: the pixel's colour is not that of the pixel before.
         std::uint32_t changes = bits ^ ((bits << 1U) | (dark ? 1U : 0U));
         if (start == 0) {
@@ -177,36 +221,31 @@ void RowScanner::find_runs(int contrast) {
   run_ends_.push_back(static_cast<std::int32_t>(blocks_ * kBlock));
 }
 
-std::span<const Seed> RowScanner::scan(const LumaView& frame, int v, int u0, int u1, int contrast,
-                                       int max_extent) {
+void RowScanner::find_seeds(const Line& line) {
   seeds_.clear();
-  if (u1 - u0 < 8) return seeds_;
-  smooth(frame, v, u0, u1);
-  find_runs(contrast);
-  const int last_end = u1 - u0 + 1;
+  const int last_end = u1_ - u0_ + 1;
   // run i covers run_ends_[i - 1] ... run_ends_[i] - 1; bright ones with a run on both sides.
   for (std::size_t i = first_run_dark_ ? 1 : 2; i + 1 < run_ends_.size(); i += 2) {
     const int left_start = i >= 2 ? run_ends_[i - 2] : 0;
     const int bright_start = run_ends_[i - 1], bright_end = run_ends_[i];
     const int right_end = std::min<int>(run_ends_[i + 1], last_end);
     const int left = bright_start - left_start, right = right_end - bright_end;
-    if (right_end - left_start > max_extent) continue;
+    if (right_end - left_start > max_extent_) continue;
     if (!is_marker_pattern(left, bright_end - bright_start, right)) continue;
     const auto level = [&](int start, int end) {
-      return line_[static_cast<std::size_t>((start + end) / 2)];
+      return line.levels[static_cast<std::size_t>((start + end) / 2)];
     };
     const int dark_level = (level(left_start, bright_start) + level(bright_end, right_end)) / 2;
     const int bright_level = level(bright_start, bright_end);
-    if (bright_level - dark_level < contrast) continue;
+    if (bright_level - dark_level < contrast_) continue;
     Seed seed;
-    seed.v = v;
-    seed.u = u0 + (left_start + bright_start) / 2;
-    seed.bright_u = u0 + (bright_start + bright_end) / 2;
+    seed.v = line.v;
+    seed.u = u0_ + (left_start + bright_start) / 2;
+    seed.bright_u = u0_ + (bright_start + bright_end) / 2;
     seed.threshold = (dark_level + bright_level + 1) / 2;
     seed.extent = right_end - left_start;
     seeds_.push_back(seed);
   }
-  return seeds_;
 }
 
 }  // namespace roundel

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/box.hpp"
 #include "core/luma_view.hpp"
 
 namespace roundel {
@@ -23,19 +25,39 @@ struct Seed {
 // that the inside of a wide dark disc stays dark. Noise below `contrast` makes no runs.
 class RowScanner {
  public:
-  // Seeds of the row pair v, v + 1 (averaged, which halves the noise), by rising u; v + 1 must be
-  // in the frame. Columns u0 ... u1 (both included) are looked at. The span holds until the next
-  // call.
-  std::span<const Seed> scan(const LumaView& frame, int v, int u0, int u1, int contrast,
-                             int max_extent);
+  // Seeds are looked for in the row pairs (v, v + 1) of an area, averaged, which halves the noise:
+  // v0, v0 + spacing and so on up to v1, and no further than the frame goes, as columns. The frame
+  // must outlive the scan.
+  void start(const LumaView& frame, const Box& area, int spacing, int contrast, int max_extent);
+
+  // Goes on to the next row pair. False after the last one.
+  bool next();
+
+  // Of this row pair, by rising u. The span holds until the next call.
+  std::span<const Seed> seeds() const { return seeds_; }
 
  private:
-  void smooth(const LumaView& frame, int v, int u0, int u1);
-  void find_runs(int contrast);
+  // A smoothed row and the extremes of its blocks.
+  struct Line {
+    int v = 0;
+    std::vector<std::uint8_t> levels;  // from u0_ on
+    std::vector<std::uint8_t> block_min, block_max;
+  };
 
-  std::vector<std::uint8_t> line_;  // the smoothed row from u0 on
-  std::size_t blocks_ = 0;          // that have pixels; the buffers go on with some without
-  std::vector<std::uint8_t> block_min_, block_max_;
+  void prefetch(int v) const;
+  void prepare(Line& line, int v);
+  void find_runs(const Line& line);
+  void find_seeds(const Line& line);
+
+  LumaView frame_;  // of the scan at hand, as what follows
+  int u0_ = 0, u1_ = 0, v_ = 0, last_v_ = 0, spacing_ = 1;
+  int contrast_ = 0, max_extent_ = 0;
+  std::size_t blocks_ = 0;  // that have pixels; the buffers go on with some without
+
+  // The row pair at hand and the one to come, whose extremes are worked out well before they are
+  // read: a processor is slow to give out again in other portions what it has just taken in.
+  std::array<Line, 2> lines_;
+  std::size_t prepared_ = 0;  // which of them is to come
   std::vector<std::uint8_t> threshold_, middle_, contrasted_, crossing_;  // LineKernels::BlockLooks
   std::vector<std::int32_t> run_ends_;  // one past each run's last pixel; colours alternate
   bool first_run_dark_ = false;

@@ -55,16 +55,22 @@ double distance_px(const Pose& from, const Pose& to, double radius_m, double rad
 }
 
 // The camera's driver has just written the picture, mostly not into this processor's cache: what
-// the next marker needs may be on its way while this one is worked on.
+// the next marker needs may be on its way while this one is worked on. Each row is read once, which
+// brings its page's address along, without which hints are dropped; for the rest hints will do.
 void prefetch(const LumaView& frame, const Ellipse& e) {
   constexpr std::ptrdiff_t kLine = 64;  // bytes
   const int reach = static_cast<int>(1.2 * e.a) + 1;
   const int u = static_cast<int>(e.u), v = static_cast<int>(e.v);
   const int u0 = std::max(0, u - reach), u1 = std::min(frame.width - 1, u + reach);
   const int v0 = std::max(0, v - reach), v1 = std::min(frame.height - 1, v + reach);
-  for (int row = v0; row <= v1 && u0 <= u1; ++row) {
+  if (u0 > u1) return;
+  for (int row = v0; row <= v1; ++row) {
+    static_cast<void>(
+        *static_cast<const volatile std::uint8_t*>(frame.row(row) + u0 * frame.pixel_stride));
+  }
+  for (int row = v0; row <= v1; ++row) {
     const std::uint8_t* last = frame.row(row) + u1 * frame.pixel_stride;
-    for (const std::uint8_t* at = frame.row(row) + u0 * frame.pixel_stride; at < last;
+    for (const std::uint8_t* at = frame.row(row) + u0 * frame.pixel_stride + kLine; at < last;
          at += kLine) {
       __builtin_prefetch(at);
     }

@@ -131,8 +131,9 @@ void print_kernels() {
   RowScanner scanner;
   Checksum seeds;
   int count = 0;
-  for (int v = 0; v + 1 < picture.height; v += 2) {
-    for (const Seed& seed : scanner.scan(picture.view(), v, 0, picture.width - 1, 20, 1200)) {
+  scanner.start(picture.view(), {0, 0, picture.width - 1, picture.height - 1}, 2, 20, 1200);
+  while (scanner.next()) {
+    for (const Seed& seed : scanner.seeds()) {
       for (const int x : {seed.u, seed.v, seed.bright_u, seed.threshold, seed.extent}) seeds.add(x);
       ++count;
     }

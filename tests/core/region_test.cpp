@@ -148,9 +148,10 @@ TEST_CASE("a row across a marker's centre makes one seed between its dark runs")
     }
   }
   RowScanner scanner;
-  const auto seeds = scanner.scan(image.view(), 4, 0, 199, 20, 500);
+  scanner.start(image.view(), {0, 4, 199, 4}, 1, 20, 500);
+  REQUIRE(scanner.next());
   int between = 0;
-  for (const Seed& seed : seeds) {
+  for (const Seed& seed : scanner.seeds()) {
     if (std::abs(seed.bright_u - 95) > 2) continue;
     ++between;
     CHECK(image.view().at(seed.u, seed.v) == 35);
@@ -169,7 +170,10 @@ TEST_CASE("a slow gradient or noise below the contrast makes no seed") {
     }
   }
   RowScanner scanner;
-  CHECK(scanner.scan(image.view(), 1, 0, 399, 25, 500).empty());
+  scanner.start(image.view(), {0, 1, 399, 1}, 1, 25, 500);
+  REQUIRE(scanner.next());
+  CHECK(scanner.seeds().empty());
+  CHECK_FALSE(scanner.next());
 }
 
 TEST_CASE("the noise estimate follows the noise, not the edges") {
