@@ -34,8 +34,8 @@ constexpr double kMinSpread = 0.06;
 constexpr double kSpoilt = 0.01, kNoCode = 0.05;
 // Half-teeth that scatter by more of half the code's contrast err together (motion, a pose that is
 // off, a code of another length), which the likelihood of one by one knows nothing of: of such
-// readings none is surer than so. Of 57 000 readings at 0.99 or more, from easy to hopeless, 24 were
-// wrong, 21 of them of such a scatter.
+// readings none is surer than so. Of 57 000 readings at 0.99 or more, from easy to hopeless, 24
+// were wrong, 21 of them of such a scatter.
 constexpr double kDoubtfulSpread = 0.42, kSurestOfDoubtful = 0.985;
 
 }  // namespace
