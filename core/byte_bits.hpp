@@ -25,11 +25,20 @@ inline std::uint32_t bits_of(const Byte16& mask) {
 #endif
 }
 
+// Sixteen bytes from memory, and the same of every second one, which reads 32.
+inline Byte16 load_16(const std::uint8_t* bytes) {
+  Byte16 loaded;
+  __builtin_memcpy(&loaded, bytes, sizeof loaded);
+  return loaded;
+}
+inline Byte16 load_every_second(const std::uint8_t* bytes) {
+  return __builtin_shufflevector(load_16(bytes), load_16(bytes + 16), 0, 2, 4, 6, 8, 10, 12, 14, 16,
+                                 18, 20, 22, 24, 26, 28, 30);
+}
+
 // Bit i: byte i of 16 is below the threshold.
 inline std::uint32_t bits_below(const std::uint8_t* bytes, std::uint8_t threshold) {
-  Byte16 levels;
-  __builtin_memcpy(&levels, bytes, sizeof levels);
-  return bits_of(levels < Byte16{} + threshold);
+  return bits_of(load_16(bytes) < Byte16{} + threshold);
 }
 
 // The same of 64.
@@ -37,6 +46,17 @@ inline std::uint64_t bits_of_64_below(const std::uint8_t* bytes, std::uint8_t th
   std::uint64_t bits = 0;
   for (unsigned part = 0; part < 4; ++part) {
     bits |= std::uint64_t{bits_below(bytes + 16 * part, threshold)} << (16 * part);
+  }
+  return bits;
+}
+
+// Bit i: byte 2 i is below the threshold, of 64. Reads one byte more than the last of them.
+inline std::uint64_t bits_of_64_below_every_second(const std::uint8_t* bytes,
+                                                   std::uint8_t threshold) {
+  std::uint64_t bits = 0;
+  for (unsigned part = 0; part < 4; ++part) {
+    const Byte16 dark = load_every_second(bytes + 32 * part) < Byte16{} + threshold;
+    bits |= std::uint64_t{bits_of(dark)} << (16 * part);
   }
   return bits;
 }

@@ -1,5 +1,7 @@
 #include "core/line_kernels.hpp"
 
+#include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "core/simd.hpp"
@@ -8,17 +10,59 @@ namespace roundel {
 
 namespace {
 
-ROUNDEL_INLINE void average_line(const std::uint8_t* upper, const std::uint8_t* lower, int count,
-                                 std::uint8_t* out) {
-  // Means of two that round up: what vector units have an instruction for.
-  const auto mean = [](unsigned a, unsigned b) __attribute__((always_inline)) {
-    return (a + b + 1) >> 1;
-  };
+// Means of two that round up: what vector units have an instruction for.
+ROUNDEL_INLINE unsigned mean(unsigned a, unsigned b) {
+  return (a + b + 1) >> 1;
+}
+
+// Averages of pixels and of those a stride further in the same rows.
+template <typename Stride>
+ROUNDEL_INLINE void average_some(const std::uint8_t* upper, const std::uint8_t* lower,
+                                 Stride stride, int count, std::uint8_t* __restrict out) {
   for (int i = 0; i < count; ++i) {
-    const unsigned here = mean(upper[i], lower[i]);
-    const unsigned next = mean(upper[i + 1], lower[i + 1]);
+    const unsigned here = mean(upper[i * stride], lower[i * stride]);
+    const unsigned next = mean(upper[(i + 1) * stride], lower[(i + 1) * stride]);
     out[i] = static_cast<std::uint8_t>(mean(here, next));
   }
+}
+
+// Strides are the compiler's to know, where they are those of all usual formats.
+constexpr std::integral_constant<int, 1> kSideBySide;
+constexpr std::integral_constant<int, 2> kEverySecond;
+
+constexpr int kAtOnce = 64;
+
+ROUNDEL_INLINE void average_line(const std::uint8_t* upper, const std::uint8_t* lower, int count,
+                                 std::uint8_t* out) {
+  if (count < kAtOnce) return average_some(upper, lower, kSideBySide, count, out);
+  for (int i = 0; i < count; i += kAtOnce) {
+    i = std::min(i, count - kAtOnce);  // the last ones overlap with those before
+    average_some(upper + i, lower + i, kSideBySide, kAtOnce, out + i);
+  }
+}
+
+// Whatever lies between the pixels is averaged as well, but with the last of them, beyond which
+// there may be nothing.
+ROUNDEL_INLINE void average_every_second(const std::uint8_t* upper, const std::uint8_t* lower,
+                                         int count, std::uint8_t* out) {
+  int i = 0;
+  for (; i + kAtOnce < count; i += kAtOnce) {
+    std::uint8_t all[2 * kAtOnce];  // NOLINT(modernize-avoid-c-arrays): written in full below
+    for (int k = 0; k < 2 * kAtOnce; ++k) {
+      const unsigned here = mean(upper[2 * i + k], lower[2 * i + k]);
+      const unsigned next = mean(upper[2 * i + k + 2], lower[2 * i + k + 2]);
+      all[k] = static_cast<std::uint8_t>(mean(here, next));
+    }
+    for (int k = 0; k < kAtOnce; ++k) out[i + k] = all[2 * k];
+  }
+  average_some(upper + 2 * i, lower + 2 * i, kEverySecond, count - i, out + i);
+}
+
+ROUNDEL_INLINE void average_pixels(const std::uint8_t* upper, const std::uint8_t* lower,
+                                   std::ptrdiff_t stride, int count, std::uint8_t* out) {
+  if (stride == 1) return average_line(upper, lower, count, out);
+  if (stride == 2) return average_every_second(upper, lower, count, out);
+  average_some(upper, lower, stride, count, out);
 }
 
 // A register of kBytes; each lane of 16 bytes works on blocks of its own.
@@ -142,20 +186,20 @@ ROUNDEL_INLINE void judge_line(const std::uint8_t* low, const std::uint8_t* high
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): attributes and names take none.
-#define ROUNDEL_LINE_KERNELS(suffix, attribute, bytes)                                             \
-  attribute void average_##suffix(const std::uint8_t* upper, const std::uint8_t* lower, int count, \
-                                  std::uint8_t* out) {                                             \
-    average_line(upper, lower, count, out);                                                        \
-  }                                                                                                \
-  attribute void bound_##suffix(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,   \
-                                std::uint8_t* high) {                                              \
-    bound_line<bytes>(line, blocks, low, high);                                                    \
-  }                                                                                                \
-  attribute void judge_##suffix(const std::uint8_t* low, const std::uint8_t* high,                 \
-                                std::size_t blocks, std::uint8_t contrast,                         \
-                                const LineKernels::BlockLooks& looks) {                            \
-    judge_line<bytes>(low, high, blocks, contrast, looks);                                         \
-  }                                                                                                \
+#define ROUNDEL_LINE_KERNELS(suffix, attribute, bytes)                                           \
+  attribute void average_##suffix(const std::uint8_t* upper, const std::uint8_t* lower,          \
+                                  std::ptrdiff_t pixel_stride, int count, std::uint8_t* out) {   \
+    average_pixels(upper, lower, pixel_stride, count, out);                                      \
+  }                                                                                              \
+  attribute void bound_##suffix(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low, \
+                                std::uint8_t* high) {                                            \
+    bound_line<bytes>(line, blocks, low, high);                                                  \
+  }                                                                                              \
+  attribute void judge_##suffix(const std::uint8_t* low, const std::uint8_t* high,               \
+                                std::size_t blocks, std::uint8_t contrast,                       \
+                                const LineKernels::BlockLooks& looks) {                          \
+    judge_line<bytes>(low, high, blocks, contrast, looks);                                       \
+  }                                                                                              \
   constexpr LineKernels k_kernels_##suffix{average_##suffix, bound_##suffix, judge_##suffix};
 // NOLINTEND(bugprone-macro-parentheses)
 

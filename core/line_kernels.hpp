@@ -14,8 +14,8 @@ struct LineKernels {
   static constexpr int kBlocksAtOnce = 64;  // what is bounded comes in multiples of so many blocks
 
   // Averages of 2 x 2 pixels of two rows; `count` of them, each with a neighbour to its right.
-  void (*average)(const std::uint8_t* upper, const std::uint8_t* lower, int count,
-                  std::uint8_t* out);
+  void (*average)(const std::uint8_t* upper, const std::uint8_t* lower, std::ptrdiff_t pixel_stride,
+                  int count, std::uint8_t* out);
 
   // Least and greatest level of every block.
   void (*bound)(const std::uint8_t* line, std::size_t blocks, std::uint8_t* low,

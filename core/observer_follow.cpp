@@ -10,14 +10,14 @@ namespace roundel {
 namespace {
 
 // Half of the width of an edge's profile that is looked at, in blurs, and what the start may be
-// off. A pixel tells of the edge as the square of the profile's slope there: all but a hundredth of
-// it lies within that, and errors grow by 0.3 % against looking twice as far.
-constexpr double kReachBlurs = 1.5, kReachSlack = 0.4;  // pixels
+// off. A pixel tells of the edge as the square of the profile's slope: 0.98 of it lies within that
+// many blurs, and errors grow by less than one percent against looking twice as far.
+constexpr double kReachBlurs = 1.6, kReachSlack = 0.5;  // pixels
 constexpr double kMaxReach = 4.0;
 
 // Standard deviations that the last step of a followed marker may leave undone: at that the error
-// grows by four percent, mostly by much less.
-constexpr double kSettled = 0.3;
+// grows by one percent, mostly by much less.
+constexpr double kSettled = 0.15;
 
 // Beyond that the light has changed, share of the contrast.
 constexpr double kSameLight = 0.1;

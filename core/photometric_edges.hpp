@@ -224,7 +224,7 @@ template <bool kBoxed, typename V>
 ROUNDEL_INLINE Teeth<V> teeth_along(const PhotometricModel& m, const PlanePoint<V>& p,
                                     const Direction<V>& e, const V& across) {
   const float halves = static_cast<float>(m.halves);
-  const V position = simd::turn_of<V>(p.x, p.y) * halves;
+  const V position = simd::turn_of<V>(p.cosine, p.sine) * halves;
   IntOf<V> k = __builtin_convertvector(position, IntOf<V>);
   k = k >= m.halves ? k - m.halves : k;
   const V within = position - __builtin_convertvector(k, V);

@@ -284,25 +284,25 @@ PoseCovariance PhotometricFit::to_camera_axes(const PhotometricState& state,
 // pulls at the unknowns, taken to the pose. If pixels erred one by one, that would sum up to the
 // normal matrix's inverse.
 PoseCovariance PhotometricFit::parts_covariance(const PhotometricModel& model, bool inside,
-                                                int unknowns, const Step& step) const {
+                                                const Step& step) const {
   PoseCovariance sum = PoseCovariance::Zero();
-  const auto add = [&](const PixelColumns& all, auto&& add_pixels) {
+  const auto add = [&](const PixelColumns& all, auto&& add_pulls) {
     const int blocks = all.count / kPixelBlock;
     for (int part = 0; part < kParts; ++part) {
       const int from = blocks * part / kParts, to = blocks * (part + 1) / kParts;
       if (from == to) continue;
       const int at = from * kPixelBlock, count = (to - from) * kPixelBlock;
       PhotometricSums sums;
-      add_pixels(model, PixelColumns{all.x + at, all.y + at, all.grey + at, all.weight + at, count},
-                 unknowns, sums, VectorUnit::kBest);
+      add_pulls(model, PixelColumns{all.x + at, all.y + at, all.grey + at, all.weight + at, count},
+                sums, VectorUnit::kBest);
       const auto pull =
           Eigen::Map<const Eigen::Matrix<float, kUnknowns, 1>>(sums.right_side.data());
       const Eigen::Matrix<double, 6, 1> moved = step.columns.transpose() * pull.cast<double>();
       sum += moved * moved.transpose();
     }
   };
-  add(pixels_.outer(), add_outer_pixels);
-  if (inside) add(pixels_.inner(), add_inner_pixels);
+  add(pixels_.outer(), add_outer_pulls);
+  if (inside) add(pixels_.inner(), add_inner_pulls);
   return sum;
 }
 
@@ -359,8 +359,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
       if (plan.weigh_parts) {
         const PhotometricModel settled = model_of(state, pattern, deviation);
         result.disagreement = disagreement_beyond_noise(
-            to_camera_axes(state, parts_covariance(settled, inside, unknowns, step)),
-            result.covariance);
+            to_camera_axes(state, parts_covariance(settled, inside, step)), result.covariance);
         result.covariance += result.disagreement;
       }
       return result;

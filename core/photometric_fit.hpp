@@ -119,7 +119,7 @@ class PhotometricFit {
   PhotometricModel model_of(const PhotometricState& state, const Pattern& pattern,
                             double deviation) const;
   PhotometricState advanced(const PhotometricState& state, const Vector& step) const;
-  PoseCovariance parts_covariance(const PhotometricModel& model, bool inside, int unknowns,
+  PoseCovariance parts_covariance(const PhotometricModel& model, bool inside,
                                   const Step& step) const;
   PoseCovariance to_camera_axes(const PhotometricState& state, const PoseCovariance& inverse) const;
 

@@ -104,8 +104,9 @@ template <std::size_t kColumns, typename V>
 using Products = std::array<Sums16<V>, kColumns*(kColumns + 1) / 2>;
 
 // Adds the products of some neighbouring rows and columns: as many as have their sums in registers.
+// What is round (kRound) looks the same after a turn about its normal, whose products are left out.
 constexpr std::size_t kTileRows = 4, kTileColumns = 3;
-template <std::size_t kFirstRow, std::size_t kFirstColumn, int kUnknowns, typename V>
+template <std::size_t kFirstRow, std::size_t kFirstColumn, bool kRound, int kUnknowns, typename V>
 ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
                              Products<kUnknowns + 1, V>& products) {
   constexpr std::size_t kColumns = kUnknowns + 1;
@@ -115,7 +116,8 @@ ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
     for (std::size_t r = kFirstRow; r < kEndRow; ++r) {
 #pragma GCC unroll 3
       for (std::size_t c = kFirstColumn; c < kFirstColumn + kTileColumns; ++c) {
-        if (c <= r) work(r, c, (r - kFirstRow) * kTileColumns + c - kFirstColumn);
+        if (c > r || (kRound && (r == kTurnZ || c == kTurnZ))) continue;
+        work(r, c, (r - kFirstRow) * kTileColumns + c - kFirstColumn);
       }
     }
   };
@@ -133,21 +135,22 @@ ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
   }
 }
 
-template <int kUnknowns, typename V, std::size_t kFirstRow = 0, std::size_t kFirstColumn = 0>
+template <bool kRound, int kUnknowns, typename V, std::size_t kFirstRow = 0,
+          std::size_t kFirstColumn = 0>
 ROUNDEL_INLINE void add_products(const Rows<kUnknowns, V>& rows, std::size_t groups,
                                  Products<kUnknowns + 1, V>& products) {
   if constexpr (kFirstRow <= kUnknowns) {
-    add_tile<kFirstRow, kFirstColumn, kUnknowns, V>(rows, groups, products);
+    add_tile<kFirstRow, kFirstColumn, kRound, kUnknowns, V>(rows, groups, products);
     constexpr std::size_t kNextColumn = kFirstColumn + kTileColumns;
     if constexpr (kNextColumn < std::min<std::size_t>(kFirstRow + kTileRows, kUnknowns + 1)) {
-      add_products<kUnknowns, V, kFirstRow, kNextColumn>(rows, groups, products);
+      add_products<kRound, kUnknowns, V, kFirstRow, kNextColumn>(rows, groups, products);
     } else {
-      add_products<kUnknowns, V, kFirstRow + kTileRows, 0>(rows, groups, products);
+      add_products<kRound, kUnknowns, V, kFirstRow + kTileRows, 0>(rows, groups, products);
     }
   }
 }
 
-template <int kUnknowns, typename V, typename Model>
+template <bool kRound, int kUnknowns, typename V, typename Model>
 ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pixels,
                                PhotometricSums& sums, const Model& expect) {
   constexpr std::size_t kColumns = kUnknowns + 1;
@@ -166,7 +169,7 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
             m, p, expect(p), load<V>(pixels.grey + at), load<V>(pixels.weight + at), groups, rows);
       }
     }
-    add_products<kUnknowns, V>(rows, groups, products);
+    add_products<kRound, kUnknowns, V>(rows, groups, products);
   }
   constexpr std::size_t kEntries = entry(kUnknowns, 0);
   for (std::size_t k = 0; k < kEntries; ++k) sums.normal_matrix[k] += total<V>(products[k]);
@@ -177,10 +180,48 @@ ROUNDEL_INLINE void add_pixels(const PhotometricModel& m, const PixelColumns& pi
   sums.weights += total<V>(weights);
 }
 
+// The right side alone, and the sums of squares and weights: what parts of a marker pull at.
+template <bool kRound, typename V, typename Model>
+ROUNDEL_INLINE void add_pulls(const PhotometricModel& m, const PixelColumns& pixels,
+                              PhotometricSums& sums, const Model& expect) {
+  constexpr int kUnknowns = kPhotometricUnknowns;
+  std::array<Sums16<V>, kUnknowns + 1> products{};
+  Sums16<V> weights{};
+  Rows<kUnknowns, V> rows;
+  for (int i = 0; i < pixels.count; i += pixels.every * kPixelBlock) {
+    for (int in_block = 0; in_block < kPixelBlock; in_block += simd::kLanesOf<V>) {
+      const int at = i + in_block;
+      const std::size_t part = static_cast<std::size_t>(in_block) / simd::kLanesOf<V> % kParts<V>;
+      const auto p = photometric::plane_point<V>(m, load<V>(pixels.x + at), load<V>(pixels.y + at));
+      weights[part] += fill_rows<kUnknowns, V>(m, p, expect(p), load<V>(pixels.grey + at),
+                                               load<V>(pixels.weight + at), 0, rows);
+#pragma GCC unroll 16
+      for (std::size_t k = 0; k <= kUnknowns; ++k) {
+        if (kRound && k == kTurnZ) continue;
+        products[k][part] += rows[k][0] * rows[kUnknowns][0];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < kUnknowns; ++k) sums.right_side[k] += total<V>(products[k]);
+  sums.squares += total<V>(products.back());
+  sums.weights += total<V>(weights);
+}
+
+// kUnknowns of 0: the pulls at all of them.
+template <bool kRound, int kUnknowns, typename V, typename Model>
+ROUNDEL_INLINE void add(const PhotometricModel& m, const PixelColumns& pixels,
+                        PhotometricSums& sums, const Model& expect) {
+  if constexpr (kUnknowns == 0) {
+    add_pulls<kRound, V>(m, pixels, sums, expect);
+  } else {
+    add_pixels<kRound, kUnknowns, V>(m, pixels, sums, expect);
+  }
+}
+
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add_pixels<kUnknowns, V>(
+  add<true, kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::outer_rim<kBoxed, V>(m, p);
       });
@@ -189,7 +230,7 @@ ROUNDEL_INLINE void add_outer(const PhotometricModel& m, const PixelColumns& pix
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixels,
                              PhotometricSums& sums) {
-  add_pixels<kUnknowns, V>(
+  add<false, kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::code_ring<kBoxed, V>(m, p);
       });
@@ -198,7 +239,7 @@ ROUNDEL_INLINE void add_code(const PhotometricModel& m, const PixelColumns& pixe
 template <int kUnknowns, bool kBoxed, typename V>
 ROUNDEL_INLINE void add_plain(const PhotometricModel& m, const PixelColumns& pixels,
                               PhotometricSums& sums) {
-  add_pixels<kUnknowns, V>(
+  add<true, kUnknowns, V>(
       m, pixels, sums, [&](const PlanePoint<V>& p) __attribute__((always_inline)) {
         return photometric::plain_centre<kBoxed, V>(m, p);
       });
@@ -208,6 +249,7 @@ using Kernel = void (*)(const PhotometricModel&, const PixelColumns&, Photometri
 struct Kernels {
   struct Set {
     Kernel followed_outer, followed_code, code_outer, code_code, outer, plain;
+    Kernel pulls_outer, pulls_code, pulls_plain;
   };
   Set gaussian, boxed;
 };
@@ -225,8 +267,12 @@ struct Kernels {
   ROUNDEL_KERNEL(set##_code_code, attribute, add_code, kCodeUnknowns, boxed, lanes)           \
   ROUNDEL_KERNEL(set##_outer, attribute, add_outer, kPhotometricUnknowns, boxed, lanes)       \
   ROUNDEL_KERNEL(set##_plain, attribute, add_plain, kPhotometricUnknowns, boxed, lanes)       \
+  ROUNDEL_KERNEL(set##_pulls_outer, attribute, add_outer, 0, boxed, lanes)                    \
+  ROUNDEL_KERNEL(set##_pulls_code, attribute, add_code, 0, boxed, lanes)                      \
+  ROUNDEL_KERNEL(set##_pulls_plain, attribute, add_plain, 0, boxed, lanes)                    \
   constexpr Kernels::Set k_##set{set##_followed_outer, set##_followed_code, set##_code_outer, \
-                                 set##_code_code,      set##_outer,         set##_plain};
+                                 set##_code_code,      set##_outer,         set##_plain,      \
+                                 set##_pulls_outer,    set##_pulls_code,    set##_pulls_plain};
 
 // NOLINTEND(bugprone-macro-parentheses)
 ROUNDEL_KERNELS(baseline, , false, simd::Float8)
@@ -274,6 +320,17 @@ void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels,
                      : unknowns == kFollowedUnknowns ? k.followed_code
                                                      : k.code_code;
   add(model, pixels, sums);
+}
+
+void add_outer_pulls(const PhotometricModel& model, const PixelColumns& pixels,
+                     PhotometricSums& sums, VectorUnit unit) {
+  kernels(model, unit).pulls_outer(model, pixels, sums);
+}
+
+void add_inner_pulls(const PhotometricModel& model, const PixelColumns& pixels,
+                     PhotometricSums& sums, VectorUnit unit) {
+  const Kernels::Set& k = kernels(model, unit);
+  (model.halves == 0 ? k.pulls_plain : k.pulls_code)(model, pixels, sums);
 }
 
 }  // namespace roundel

@@ -80,4 +80,11 @@ void add_outer_pixels(const PhotometricModel& model, const PixelColumns& pixels,
 void add_inner_pixels(const PhotometricModel& model, const PixelColumns& pixels, int unknowns,
                       PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
 
+// The same of the right side of all unknowns, squares and weights alone: the normal matrix stays as
+// it is.
+void add_outer_pulls(const PhotometricModel& model, const PixelColumns& pixels,
+                     PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
+void add_inner_pulls(const PhotometricModel& model, const PixelColumns& pixels,
+                     PhotometricSums& sums, VectorUnit unit = VectorUnit::kBest);
+
 }  // namespace roundel

@@ -23,7 +23,12 @@ std::uint64_t bits_between(int first, int last) {
 __attribute__((noinline)) std::uint64_t RegionFiller::classify(int column, int v) const {
   const int u = column * kWord, count = std::min(kWord, frame_.width - u);
   const std::uint8_t* luma = frame_.row(v) + u * frame_.pixel_stride;
+  constexpr int kAhead = 2;  // rows: fills go downward first
+  if (v + kAhead < frame_.height) __builtin_prefetch(luma + kAhead * frame_.row_stride);
   if (frame_.pixel_stride == 1 && count == kWord) return bits_of_64_below(luma, threshold_);
+  if (frame_.pixel_stride == 2 && u + kWord < frame_.width) {
+    return bits_of_64_below_every_second(luma, threshold_);
+  }
   std::array<std::uint8_t, kWord> bytes{};
   bytes.fill(255);  // never below a threshold
   for (int i = 0; i < count; ++i) {
@@ -105,7 +110,8 @@ FillResult RegionFiller::grow(int u, int v) {
   }
   box_ = {u, v, u, v};
   FillResult result = append(u, v);
-  // The newest first: what grows beyond the limits does so soon, in a straight line.
+  // The newest first, and downward: what grows beyond the limits does so soon, in a straight line,
+  // along which the rows to come will find it given up.
   while (!open_.empty() && result == FillResult::kComplete) {
     const Run run = open_.back();
     open_.pop_back();

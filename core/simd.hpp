@@ -77,33 +77,30 @@ ROUNDEL_INLINE float sum(const Float8& a) {
 
 // Polynomials are taken apart into short chains: a processor works on several at a time.
 
-// e^-y for y in [0, 12], to 3e-7 of the value.
+// e^-y for y in [0, 80], to 2e-7 of the value.
 template <typename V>
 ROUNDEL_INLINE V exp_minus(const V& y) {
-  const V x = y * -0.0625F;  // 16 times smaller: [-0.75, 0]
-  const V x2 = x * x;
-  const V high = (1 / 24.0F + x * (1 / 120.0F)) + x2 * (1 / 720.0F);
-  V e = (1 + x) + x2 * ((0.5F + x * (1 / 6.0F)) + x2 * high);
-  e *= e;
-  e *= e;
-  e *= e;
-  return e * e;
+  const V halvings = y * 1.44269504F;
+  const IntOf<V> whole = __builtin_convertvector(halvings, IntOf<V>);
+  const V x = halvings - __builtin_convertvector(whole, V), x2 = x * x;
+  const V low = (0.999999925F - x * 0.693142253F) + x2 * (0.24017219F - x * 0.0552797233F);
+  const V e = low + (x2 * x2) * (0.00918861209F - x * 0.000938788358F);
+  return reinterpret_cast<V>(reinterpret_cast<IntOf<V>>(e) - (whole << 23));
 }
 
-// Angle of (x, y) in turns, [0, 1), to 1e-7; (0, 0) gives some angle.
+// Angle of a direction of length 1 in turns, [0, 1], to 1e-7.
 template <typename V>
-ROUNDEL_INLINE V turn_of(const V& x, const V& y) {
-  const V ax = abs(x), ay = abs(y);
+ROUNDEL_INLINE V turn_of(const V& cosine, const V& sine) {
+  const V ax = abs(cosine), ay = abs(sine);
   const IntOf<V> steep = ay > ax;
-  const V t = select<V>(steep, ax, ay) / (select<V>(steep, ay, ax) + 1e-20F);
-  const V s = t * t, s2 = s * s, s4 = s2 * s2;
-  // atan(t) / 2 pi on [0, 1], odd polynomial.
-  const V low = (0.159154923F - s * 0.053050360F) + s2 * (0.031806932F - s * 0.022528074F);
-  const V high = (0.016675522F - s * 0.011450219F) + s2 * (0.006262017F - s * 0.002252416F);
-  V a = t * ((low + s4 * high) + (s4 * s4) * 0.000381676F);
+  const V t = min(ax, ay);
+  const V s = t * t, s2 = s * s;
+  // asin(t) / 2 pi up to the half of a right angle, odd polynomial.
+  const V low = (0.159154044F + s * 0.0265724588F) + s2 * (0.0112521992F + s * 0.0113111208F);
+  V a = t * (low + (s2 * s2) * (s * 0.0176938578F - 0.00709634218F));
   a = select<V>(steep, 0.25F - a, a);
-  a = select<V>(x < 0, 0.5F - a, a);
-  return select<V>(y < 0, 1.0F - a, a);
+  a = select<V>(cosine < 0, 0.5F - a, a);
+  return select<V>(sine < 0, 1.0F - a, a);
 }
 
 }  // namespace roundel::simd

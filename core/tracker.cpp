@@ -20,7 +20,11 @@ constexpr int kNewcomerFrames = 5;   // a full search is spread over as many fra
 constexpr int kReadingInterval = 64, kLightInterval = 8;
 // Where the evidence leaves the pose undecided, it is weighed in every frame at first, then every
 // few.
-constexpr int kFirstWeighings = 16, kWeighingInterval = 4;
+constexpr int kFirstWeighings = 16;
+constexpr std::int64_t kWeighingInterval = 4;
+// Weighing costs several times what a fit does: a crowd's turns come so seldom that about as many
+// are weighed in a frame.
+constexpr std::int64_t kWeighingsAFrame = 64;
 // What moves as it moved before is followed without a look at its outline; pixels.
 constexpr double kMaxSurprise = 0.6;
 // And so close to the expected place the first step of the fit is mostly the last one.
@@ -133,7 +137,8 @@ struct Tracker::Impl {
   std::shared_ptr<Workers> workers;
   std::int64_t next_number = 1;
   std::int64_t frames = 0;
-  int band = 0;  // the part of the image searched for newcomers in this frame
+  std::int64_t undecided = 0;  // tracks whose pose was not sure at the frame's start
+  int band = 0;                // the part of the image searched for newcomers in this frame
   StageStopwatch::Clock clock = nullptr;
   StageTimes stage_times;
 };
@@ -178,10 +183,10 @@ void Tracker::Impl::search_nearby(const LumaView& frame, const Track& track) {
 // Whether a track only has to be fitted, not read and weighed anew; which it is from time to time.
 bool Tracker::Impl::only_fitted(const Track& track) const {
   if (!track.is_sure_of_name(observer.id_count())) return false;
-  int interval = kReadingInterval;
+  std::int64_t interval = kReadingInterval;
   if (!track.is_sure_of_pose()) {
     if (track.weighings < kFirstWeighings) return false;
-    interval = kWeighingInterval;
+    interval = std::max(kWeighingInterval, undecided / kWeighingsAFrame);
   }
   return (frames + track.number) % interval != 0;
 }
@@ -275,6 +280,8 @@ Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
 }
 
 void Tracker::Impl::follow_tracks(const LumaView& frame) {
+  undecided = std::count_if(tracks.begin(), tracks.end(),
+                            [](const Track& t) { return !t.is_sure_of_pose(); });
   const bool shared = follow_side_by_side(frame);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     Track& track = tracks[i];

@@ -366,6 +366,27 @@ TEST_CASE("vector units give the same sums to the bit") {
   }
 }
 
+TEST_CASE("pulls are the right side of the same equations, on every vector unit") {
+  for (int kind = 0; kind < 6; ++kind) {
+    const bool inner = kind % 3 != 0, plain = kind % 3 == 2;
+    KernelCase c = kernel_case(plain ? 0 : 16, inner ? 0.2 : 0.85, inner ? 0.75 : 1.15);
+    c.model.boxed = kind >= 3;
+    PhotometricSums all;
+    const int unknowns = plain ? kPhotometricUnknowns : kCodeUnknowns;
+    (inner ? add_inner_pixels : add_outer_pixels)(c.model, c.columns(), unknowns, all,
+                                                  VectorUnit::kBest);
+    for (const VectorUnit unit :
+         {VectorUnit::kBest, VectorUnit::kNextBest, VectorUnit::kBaseline}) {
+      PhotometricSums pulls;
+      (inner ? add_inner_pulls : add_outer_pulls)(c.model, c.columns(), pulls, unit);
+      CHECK(pulls.squares == all.squares);
+      CHECK(pulls.weights == all.weights);
+      CHECK(pulls.right_side == all.right_side);
+      CHECK(pulls.normal_matrix == PhotometricSums{}.normal_matrix);
+    }
+  }
+}
+
 TEST_CASE("fewer unknowns are the first part of the same equations") {
   const KernelCase c = kernel_case(16, 0.2, 0.75);
   PhotometricSums all, few;

@@ -80,6 +80,27 @@ TEST_CASE("a region has the pixels that a plain flood fill finds") {
   }
 }
 
+TEST_CASE("a region is the same in packed pictures, where luma and chroma take turns") {
+  Random random(25);
+  constexpr int kWidth = 200, kHeight = 40;  // more than a word of pixels, and not whole words
+  for (int round = 0; round < 50; ++round) {
+    GreyImage image = blank(kWidth, kHeight, 200);
+    for (int i = 0; i < 4000; ++i) set(image, random.integer(1, 198), random.integer(1, 38), 20);
+    std::vector<std::uint8_t> packed(2 * image.pixels.size());
+    for (auto& byte : packed) byte = static_cast<std::uint8_t>(random.integer(0, 255));
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) packed[2 * i + 1] = image.pixels[i];
+    const LumaView luma = uyvy_view(packed.data(), kWidth, kHeight, 2 * kWidth);
+    RegionFiller one, other;
+    const int u = random.integer(1, 198), v = random.integer(1, 38);
+    const FillResult result = one.fill(image.view(), u, v, 100, {});
+    REQUIRE(other.fill(luma, u, v, 100, {}) == result);
+    if (result != FillResult::kComplete) continue;
+    CHECK(other.region().dark.n == one.region().dark.n);
+    CHECK(other.region().dark.suv == one.region().dark.suv);
+    CHECK(other.region().filled.suu == one.region().filled.suu);
+  }
+}
+
 TEST_CASE("a region that reaches the border or outgrows its limit is given up") {
   GreyImage image = blank(60, 60, 200);
   for (int u = 20; u < 40; ++u) set(image, u, 30, 10);
@@ -91,6 +112,19 @@ TEST_CASE("a region that reaches the border or outgrows its limit is given up") 
   CHECK(filler.fill(image.view(), 25, 30, 100, {20, 1}) == FillResult::kComplete);
   for (int v = 0; v <= 30; ++v) set(image, 22, v, 10);
   CHECK(filler.fill(image.view(), 25, 30, 100, {}) == FillResult::kTouchesEdge);
+}
+
+TEST_CASE("what outgrows its limits is given up after a line of runs, not an area") {
+  Random random(26);
+  GreyImage image = blank(600, 600, 20);
+  for (int i = 0; i < 110'000; ++i) set(image, random.integer(0, 599), random.integer(0, 599), 200);
+  set(image, 300, 300, 20);
+  constexpr int kLimit = 200;
+  RegionFiller filler;
+  REQUIRE(filler.fill(image.view(), 300, 300, 100, {kLimit, kLimit}) == FillResult::kTooLarge);
+  int runs = 0;
+  filler.for_each_run([&](const Run&) { ++runs; });
+  CHECK(runs < 2 * kLimit);  // all around, as far as the limit: 1233
 }
 
 TEST_CASE("what lies inside the outline does not change its filled moments") {
@@ -190,6 +224,35 @@ TEST_CASE("the noise estimate follows the noise, not the edges") {
   }
 }
 
+TEST_CASE(
+    "averages are the same by any vector unit, and by plain counting, with pixels apart too") {
+  Random random(78);
+  for (const std::ptrdiff_t stride : {1, 2, 3}) {
+    for (const int count : {5, 63, 64, 65, 200, 257}) {
+      // Exactly the bytes that there are: the last pixel is the last byte.
+      std::vector<std::uint8_t> upper(static_cast<std::size_t>(count * stride + 1));
+      std::vector<std::uint8_t> lower(upper.size());
+      for (auto* bytes : {&upper, &lower}) {
+        for (auto& byte : *bytes) byte = static_cast<std::uint8_t>(random.integer(0, 255));
+      }
+      for (const VectorUnit unit :
+           {VectorUnit::kBest, VectorUnit::kNextBest, VectorUnit::kBaseline}) {
+        std::vector<std::uint8_t> line(static_cast<std::size_t>(count) + 1, 99);
+        line_kernels(unit).average(upper.data(), lower.data(), stride, count, line.data());
+        for (int i = 0; i < count; ++i) {
+          const auto mean = [&](std::ptrdiff_t at) {
+            const auto k = static_cast<std::size_t>(at);
+            return (upper[k] + lower[k] + 1) / 2;
+          };
+          REQUIRE(line[static_cast<std::size_t>(i)] ==
+                  (mean(i * stride) + mean((i + 1) * stride) + 1) / 2);
+        }
+        CHECK(line.back() == 99);
+      }
+    }
+  }
+}
+
 TEST_CASE("what a row's blocks look like is the same by any vector unit, and by plain counting") {
   constexpr std::size_t kBlocks = 2 * LineKernels::kBlocksAtOnce;
   constexpr std::size_t kPixels = kBlocks * LineKernels::kBlock;
@@ -204,7 +267,7 @@ TEST_CASE("what a row's blocks look like is the same by any vector unit, and by 
   for (const VectorUnit unit : {VectorUnit::kBest, VectorUnit::kNextBest, VectorUnit::kBaseline}) {
     const LineKernels& kernels = line_kernels(unit);
     std::vector<std::uint8_t> line(kPixels), low(kBlocks + 2), high(kBlocks + 2);
-    kernels.average(upper.data(), lower.data(), kPixels, line.data());
+    kernels.average(upper.data(), lower.data(), 1, kPixels, line.data());
     // Calmer toward the end, so that blocks of all kinds occur.
     for (std::size_t i = 0; i < kPixels; ++i)
       line[i] = static_cast<std::uint8_t>(line[i] >> (i / 512));
