@@ -67,8 +67,8 @@ class Cholesky {
   }
 
  private:
-  double row_[kCount][kCount];  // of the factor, lower triangle
-  double per_root_[kCount];     // of its diagonal
+  double row_[kCount][kCount] = {};  // of the factor, lower triangle
+  double per_root_[kCount] = {};     // of its diagonal
 };
 
 }  // namespace roundel

@@ -85,4 +85,12 @@ std::optional<std::array<CirclePose, 2>> circle_poses(const Conic& conic, double
   return poses;
 }
 
+Pose mirrored_pose(const Pose& pose) {
+  const Eigen::Vector3d sight = pose.position.normalized();
+  const Eigen::Matrix3d axes = pose.orientation.toRotationMatrix();
+  Eigen::Matrix3d other = axes - 2 * sight * (sight.transpose() * axes);
+  other.col(2) = other.col(0).cross(other.col(1));
+  return {pose.position, with_positive_w(Eigen::Quaterniond(other).normalized())};
+}
+
 }  // namespace roundel

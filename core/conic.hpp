@@ -7,6 +7,7 @@
 
 #include "core/camera_model.hpp"
 #include "core/marker.hpp"
+#include "core/pose.hpp"
 
 namespace roundel {
 
@@ -32,5 +33,10 @@ std::optional<Conic> fit_conic(std::span<const Eigen::Vector2d> points);
 // with the normal's misprint corrected; METHOD.md section 3). They coincide when the circle is seen
 // frontally. Nothing for conics that are no ellipse in front of the camera.
 std::optional<std::array<CirclePose, 2>> circle_poses(const Conic& conic, double radius_m);
+
+// The other pose that a circle's outline allows, seen from far: mirrored in the plane across the
+// line of sight. Good to a few percent of the radius over the distance, which does for an
+// alternative.
+Pose mirrored_pose(const Pose& pose);
 
 }  // namespace roundel

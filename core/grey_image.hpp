@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct GreyImage {
     width = new_width;
     height = new_height;
     pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  }
+  std::uint8_t& at(int u, int v) {
+    return pixels[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(u)];
   }
   LumaView view() const { return grey_view(pixels.data(), width, height, width); }
 };

@@ -35,6 +35,7 @@ struct Observation {
   bool plausible = false;  // what lies inside is a code, a plain marker's disc or too small to tell
   bool convincing = false;  // so much like a marker that this frame alone is proof of one
   bool followed = false;    // fitted from what the track knew: no new reading, no weighing
+  bool disturbed = false;   // followed where something lies over it or its light is not even
   bool lit_anew = true;     // the slope of the light was fitted
   double surprise_px = 0;   // of a followed one: how far from the expected place it was
   int pose_count = 0;       // 0 without a camera model, else 2
@@ -68,6 +69,13 @@ class Observer {
   std::optional<Observation> follow(const LumaView& frame, const PoseHypothesis& last,
                                     const Expectation& expected, int worker = 0);
 
+  // The marker of a track whose word is known, where something lies over it or its light is not
+  // even: fitted from where it is expected to what of it can be believed, for as long as that is
+  // most of it. Of the id it says what can still be read. Nothing when the picture does not bear it
+  // out.
+  std::optional<Observation> follow_disturbed(const LumaView& frame, const PoseHypothesis& last,
+                                              const Expectation& expected);
+
   // From now on follow() may be called by so many workers; never by less than before.
   void make_room_for(int workers);
 
@@ -96,6 +104,10 @@ class Observer {
   void fit_roughly(const Segment& segment, std::array<Candidate, 2>& candidates);
   bool is_clean(const LumaView& frame, const Segment& segment, const Candidate& candidate) const;
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
+
+  static Observation followed(const Pattern& pattern, const Expectation& expected,
+                              const PhotometricPose& fitted);
+  static PhotometricState start_from(const PoseHypothesis& last, const Pose& expected);
 
   void weigh_curve(const LumaView& frame, const Segment& segment, const Candidate& candidate);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/conic.hpp"
 #include "core/observer.hpp"
 #include "core/outline.hpp"
 
@@ -10,9 +11,9 @@ namespace roundel {
 namespace {
 
 // Half of the width of an edge's profile that is looked at, in blurs, and what the start may be
-// off. A pixel tells of the edge as the square of the profile's slope: 0.98 of it lies within that
+// off. A pixel tells of the edge as the square of the profile's slope: 0.97 of it lies within that
 // many blurs, and errors grow by less than one percent against looking twice as far.
-constexpr double kReachBlurs = 1.6, kReachSlack = 0.5;  // pixels
+constexpr double kReachBlurs = 1.5, kReachSlack = 0.5;  // pixels
 constexpr double kMaxReach = 4.0;
 
 // Standard deviations that the last step of a followed marker may leave undone: at that the error
@@ -28,16 +29,6 @@ constexpr double kMotionStretch = 0.1;
 // The picture bears a followed pose out while its residuals stay as they were, about, and hardly a
 // pixel is disbelieved: a bit of another word would be one in twenty.
 constexpr double kMaxGrowth = 1.3, kMinTrust = 0.97;
-
-// The other pose that the same outline allows, seen from far: mirrored in the plane across the line
-// of sight. Good to a few percent of the radius over the distance, which does for an alternative.
-Pose mirrored(const Pose& pose) {
-  const Eigen::Vector3d sight = pose.position.normalized();
-  const Eigen::Matrix3d axes = pose.orientation.toRotationMatrix();
-  Eigen::Matrix3d other = axes - 2 * sight * (sight.transpose() * axes);
-  other.col(2) = other.col(0).cross(other.col(1));
-  return {pose.position, with_positive_w(Eigen::Quaterniond(other).normalized())};
-}
 
 }  // namespace
 
@@ -57,17 +48,22 @@ bool Observer::move(Pose& pose, const Ellipse& from, const Ellipse& to) const {
   return true;
 }
 
-std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHypothesis& last,
-                                            const Expectation& expected, int worker) {
-  PhotometricFit& fit = worker == 0 ? fit_ : more_fits_[static_cast<std::size_t>(worker) - 1];
+// The light's slope stays where it is while the marker turns beneath it.
+PhotometricState Observer::start_from(const PoseHypothesis& last, const Pose& expected) {
   PhotometricState start = *last.state;
-  start.pose = expected.pose;
-  // The light's slope stays where it is while the marker turns beneath it.
+  start.pose = expected;
   const Eigen::Vector3d slope =
-      expected.pose.orientation.conjugate() *
+      expected.orientation.conjugate() *
       (last.pose.orientation * Eigen::Vector3d(start.slope_x, start.slope_y, 0));
   start.slope_x = slope.x();
   start.slope_y = slope.y();
+  return start;
+}
+
+std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHypothesis& last,
+                                            const Expectation& expected, int worker) {
+  PhotometricFit& fit = worker == 0 ? fit_ : more_fits_[static_cast<std::size_t>(worker) - 1];
+  PhotometricState start = start_from(last, expected.pose);
   const double reach = std::min(kMaxReach, kReachBlurs * start.blur_px + kReachSlack);
   InnerEdges inner;
   if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
@@ -94,28 +90,36 @@ std::optional<Observation> Observer::follow(const LumaView& frame, const PoseHyp
   plan.rough_every = 4;
   plan.settled = kSettled;
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * expected.levels.contrast();
-  const auto fitted = fit.fit(start, last.pattern, edge_look(last.pattern), plan);
+  auto fitted = fit.fit(start, last.pattern, edge_look(last.pattern), plan);
   if (!fitted || fitted->trust < kMinTrust) return std::nullopt;
   const double floor = kModelError * expected.levels.contrast();
   if (fitted->mean_square > kMaxGrowth * (last.mean_square + floor * floor)) return std::nullopt;
 
+  // Residuals that are as they were come from parts that disagree as they did.
+  fitted->disagreement = last.disagreement;
+  fitted->covariance += last.disagreement;
+  Observation observation = followed(last.pattern, expected, *fitted);
+  observation.lit_anew = all;
+  return observation;
+}
+
+Observation Observer::followed(const Pattern& pattern, const Expectation& expected,
+                               const PhotometricPose& fitted) {
   Observation observation;
   observation.segment.ellipse = expected.ellipse;
   observation.segment.levels = expected.levels;
-  observation.coded = last.pattern.kind == Pattern::Kind::kCode;
+  observation.coded = pattern.kind == Pattern::Kind::kCode;
   observation.plausible = true;
   observation.followed = true;
-  observation.lit_anew = all;
   observation.pose_count = 2;
   PoseHypothesis& found = observation.poses[0];
-  found.pose = fitted->state.pose;
-  // Residuals that are as they were come from parts that disagree as they did.
-  found.disagreement = last.disagreement;
-  found.covariance = fitted->covariance + last.disagreement;
-  found.pattern = last.pattern;
-  found.state = fitted->state;
-  found.mean_square = fitted->mean_square;
-  observation.poses[1].pose = mirrored(found.pose);
+  found.pose = fitted.state.pose;
+  found.disagreement = fitted.disagreement;
+  found.covariance = fitted.covariance;
+  found.pattern = pattern;
+  found.state = fitted.state;
+  found.mean_square = fitted.mean_square;
+  observation.poses[1].pose = mirrored_pose(found.pose);
   observation.poses[1].covariance = found.covariance;
   return observation;
 }

@@ -331,7 +331,7 @@ std::optional<PhotometricPose> PhotometricFit::fit(const PhotometricState& start
                           ? solve<kCodeUnknowns>(state, pattern, look, sums, plan, taken)
                           : solve<kUnknowns>(state, pattern, look, sums, plan, taken);
     if (!step.change.allFinite()) return std::nullopt;
-    deviation = std::max(0.5, std::sqrt(step.mean_square));
+    deviation = std::max(0.5, std::min(std::sqrt(step.mean_square), plan.max_deviation));
     state = advanced(state, step.change);
     // Beyond what a start may be off by nothing explains the pixels any more.
     const Pose& pose = state.pose;

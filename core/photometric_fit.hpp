@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "core/camera_model.hpp"
@@ -55,6 +56,8 @@ struct PhotometricState {
 struct FitPlan {
   int unknowns = kPhotometricUnknowns;  // kFollowedUnknowns keeps the others as they are
   double deviation = 0;  // of the residuals, grey levels, as far as it can be foreseen
+  // And as which they count after the first step at most: what is more is something else.
+  double max_deviation = std::numeric_limits<double>::infinity();
   int rough_steps = 1;   // first ones, that use one of `rough_every` blocks of pixels
   int rough_every = 2;
   int min_steps = 2, max_steps = 6;

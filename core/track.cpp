@@ -22,6 +22,10 @@ constexpr double kVelocityGain = 0.5, kChangeGain = 0.3;
 constexpr double kSurePose = 10, kSureName = 0.9999;
 // Faster than that a robot does not turn, radians a frame; a flip of the pose does.
 constexpr double kMaxTurn = 0.3;
+// Residuals of a marker that looks as it did grow by no more than that, a share of the contrast
+// aside.
+constexpr double kMaxGrowth = 2.5, kModelError = 0.01;
+constexpr int kMaxOtherwise = 30;  // frames
 
 Eigen::Vector3d turn_between(const Pose& before, const Pose& after) {
   const Eigen::AngleAxisd turn(after.orientation * before.orientation.conjugate());
@@ -67,6 +71,26 @@ bool Track::is_sure_of_name(int id_count) const {
   return name.id == observation.id && name.probability >= kSureName;
 }
 
+bool Track::looks_as_known(const Observation& seen_now) const {
+  const PoseHypothesis& pose = seen_now.poses[0];
+  const double floor = kModelError * seen_now.segment.levels.contrast();
+  return is_same_print(pose) &&
+         pose.mean_square < kMaxGrowth * (known_look->mean_square + floor * floor);
+}
+
+bool Track::contradicts(const Observation& seen_now, int id_count) const {
+  if (!known_look || seen_now.pose_count == 0) return false;
+  if (!looks_as_known(seen_now)) return true;
+  if (known_look->pattern.kind == Pattern::Kind::kPlain) return !seen_now.plausible;
+  const IdEvidence::Name name = evidence.best(id_count);
+  return name.probability >= kSureName && (seen_now.id != name.id || !seen_now.plausible);
+}
+
+bool Track::is_same_print(const PoseHypothesis& pose) const {
+  return known_look && pose.pattern.kind == known_look->pattern.kind &&
+         pose.pattern.word == known_look->pattern.word;
+}
+
 void Track::update(const Observation& seen_now, int id_count) {
   const Eigen::Vector2d moved(seen_now.segment.ellipse.u - ellipse.u,
                               seen_now.segment.ellipse.v - ellipse.v);
@@ -90,6 +114,12 @@ void Track::update(const Observation& seen_now, int id_count) {
   weigh_poses(seen_now);
   smooth_light(seen_now);
   const Pose& pose = seen_now.poses[static_cast<std::size_t>(pose_index)].pose;
+  // What has looked otherwise for long has changed for good.
+  const bool as_known = !known_look || looks_as_known(seen_now);
+  otherwise = as_known ? 0 : otherwise + 1;
+  if (!seen_now.disturbed && is_sure_of_name(id_count) && (as_known || otherwise > kMaxOtherwise)) {
+    known_look = observation.poses[static_cast<std::size_t>(pose_index)];
+  }
   surprise_px = seen_now.followed ? seen_now.surprise_px : surprise_px;
   if (pose_before) {
     const Eigen::Vector3d stepped = pose.position - pose_before->position;

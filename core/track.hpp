@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "core/id_evidence.hpp"
 #include "core/observer.hpp"
@@ -28,9 +29,12 @@ struct Track {
   // How far from where the motion of earlier frames led it was when it was last followed, pixels.
   double surprise_px = std::numeric_limits<double>::infinity();
 
+  // How it looked when its name was last beyond doubt.
+  std::optional<PoseHypothesis> known_look;
   Observation observation;  // of this frame, when `seen`
+  int pose_index = 0;       // which of the observation's poses is held for right
+  int otherwise = 0;        // frames in a row in which it did not look as it is known
   bool seen = false;
-  int pose_index = 0;  // which of the observation's poses is held for right
 
   // Where the ellipse is expected in the current frame, before it has been seen there.
   Ellipse predicted() const;
@@ -40,6 +44,11 @@ struct Track {
 
   // Whether id, or that it has none, is beyond doubt, so that nothing needs to be read anew.
   bool is_sure_of_name(int id_count) const;
+  // Whether an observation is at odds with a name that was beyond doubt: another word was read,
+  // none, or nothing that looks like a marker.
+  bool contradicts(const Observation& seen_now, int id_count) const;
+  // Whether a pose was fitted with the pattern that the track is known by.
+  bool is_same_print(const PoseHypothesis& pose) const;
   // The same of which of the two poses is the right one.
   bool is_sure_of_pose() const;
 
@@ -48,6 +57,7 @@ struct Track {
   void update(const Observation& seen_now, int id_count);
 
  private:
+  bool looks_as_known(const Observation& seen_now) const;
   void weigh_poses(const Observation& seen_now);
   void smooth_light(const Observation& seen_now);
 

@@ -33,6 +33,7 @@ constexpr double kLocalReach = 2.0;  // of the search around an expected place, 
 constexpr double kMaxGrowth = 1.8;   // of a marker's extent from frame to frame
 constexpr double kSameSize = 1.6;    // ratio of sizes of one marker in neighbouring frames
 constexpr double kSureReading = 0.99;
+constexpr double kAnyTurn = 1.81;         // radians: standard deviation of a turn that may be any
 constexpr std::size_t kWorthSharing = 8;  // tracks: waking a thread takes as long as a fit or two
 
 double mean_radius(const Ellipse& e) {
@@ -120,6 +121,8 @@ struct Tracker::Impl {
   void search_for_lost(const LumaView& frame);
   bool follow(const LumaView& frame, const Track& track);
   Observation observe(const LumaView& frame, const Track& track);
+  Attempt follow_disturbed(const LumaView& frame, const Track& track);
+  void follow_with_care(const LumaView& frame, Track& track);
   void search_nearby(const LumaView& frame, const Track& track);
   void find_newcomers(const LumaView& frame);
   void exchange_mistaken();
@@ -211,7 +214,8 @@ std::optional<Observation> Tracker::Impl::fit(const LumaView& frame, const Track
 
 // A marker that moves as it did before is fitted where that leads, without a look for its outline.
 Attempt Tracker::Impl::follow_closely(const LumaView& frame, const Track& track, int worker) {
-  if (track.missed != 0 || !(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return {};
+  if (track.missed != 0 || track.observation.disturbed) return {};
+  if (!(track.surprise_px < kMaxSurprise) || !only_fitted(track)) return {};
   Expectation expected;
   expected.pose = track.predicted_pose();
   const auto outline = observer.outline(expected.pose);
@@ -279,6 +283,60 @@ Observation Tracker::Impl::observe(const LumaView& frame, const Track& track) {
   return observer.observe(frame, segment);
 }
 
+// What lies over a known marker, or a shadow's edge across it, hides its outline or its word. It is
+// still where it should be, as far as most of it shows.
+Attempt Tracker::Impl::follow_disturbed(const LumaView& frame, const Track& track) {
+  if (!track.known_look) return {};
+  const PoseHypothesis& last = track.observation.poses[static_cast<std::size_t>(track.pose_index)];
+  Expectation expected;
+  expected.pose = track.predicted_pose();
+  if (!track.is_same_print(last)) expected.pose.orientation = track.known_look->pose.orientation;
+  const auto outline = observer.outline(expected.pose);
+  if (!outline || !inside(*outline, frame)) return {};
+  expected.ellipse = *outline;
+  expected.levels = measure_levels(frame, *outline, parameters.min_contrast)
+                        .value_or(track.observation.segment.levels);
+  Attempt attempt{*outline, observer.follow_disturbed(frame, *track.known_look, expected)};
+  if (!attempt.seen) return attempt;
+  Observation& seen = *attempt.seen;
+  const IdEvidence::Name name = track.evidence.best(observer.id_count());
+  if (seen.id > 0 &&
+      seen.id != name.id) {  // what reads as another's word is not this one, half hidden
+    attempt.seen.reset();
+    return attempt;
+  }
+  if (seen.id < 1 && name.id > 0) {
+    seen.id = name.id;
+    seen.id_probability = 1.0 / observer.id_count();  // says nothing for or against
+  }
+  seen.surprise_px =
+      distance_px(expected.pose, seen.poses[0].pose, parameters.diameter_m / 2, expected.ellipse.a);
+  return attempt;
+}
+
+// A marker that is not simply where its motion leads: by its outline, or by what is seen of it.
+void Tracker::Impl::follow_with_care(const LumaView& frame, Track& track) {
+  const bool disturbed = track.observation.disturbed;
+  if (disturbed) {
+    if (const Attempt attempt = follow_disturbed(frame, track); accept(attempt, frame)) {
+      track.update(*attempt.seen, observer.id_count());
+      return;
+    }
+  }
+  if (follow(frame, track)) {
+    Observation seen = observe(frame, track);
+    if (!disturbed && track.contradicts(seen, observer.id_count())) {
+      if (const Attempt attempt = follow_disturbed(frame, track); attempt.seen)
+        seen = *attempt.seen;
+    }
+    track.update(seen, observer.id_count());
+  } else if (!disturbed) {
+    if (const Attempt attempt = follow_disturbed(frame, track); accept(attempt, frame)) {
+      track.update(*attempt.seen, observer.id_count());
+    }
+  }
+}
+
 void Tracker::Impl::follow_tracks(const LumaView& frame) {
   undecided = std::count_if(tracks.begin(), tracks.end(),
                             [](const Track& t) { return !t.is_sure_of_pose(); });
@@ -289,10 +347,11 @@ void Tracker::Impl::follow_tracks(const LumaView& frame) {
     track.seen = false;
     if (track.missed != 0) continue;
     if (!shared) attempts.front() = follow_closely(frame, track, 0);
-    if (const Attempt& attempt = attempts[shared ? i : 0]; accept(attempt, frame)) {
+    const Attempt& attempt = attempts[shared ? i : 0];
+    if (accept(attempt, frame)) {
       track.update(*attempt.seen, observer.id_count());
-    } else if (follow(frame, track)) {
-      track.update(observe(frame, track), observer.id_count());
+    } else {
+      follow_with_care(frame, track);
     }
   }
 }
@@ -400,6 +459,13 @@ void Tracker::Impl::publish() {
       marker.id_probability = name.probability;
     }
     if (marker.has_pose) marker.ambiguity = std::exp(-track.pose_log_odds);
+    // The turn is that of another word than the one that the marker is known to wear.
+    if (marker.has_pose && marker.id > 0 && track.observation.id > 0 &&
+        track.observation.id != marker.id) {
+      marker.sigma_rotation = (marker.sigma_rotation.array().square() +
+                               (kAnyTurn * marker.pose.normal()).array().square())
+                                  .sqrt();
+    }
     markers.push_back(marker);
   }
 }

@@ -72,8 +72,7 @@ class Painter {
           for (int dv = -1; dv <= 1; ++dv) {
             for (int du = -1; du <= 1; ++du) sum += before.view().at(u + du, v + dv);
           }
-          image_.pixels[static_cast<std::size_t>(v * image_.width + u)] =
-              static_cast<std::uint8_t>((sum + 4) / 9);
+          image_.at(u, v) = static_cast<std::uint8_t>((sum + 4) / 9);
         }
       }
     }
@@ -104,7 +103,7 @@ class Painter {
   }
 
   void paint(const Print& print, const Pose& pose, int u, int v) {
-    std::uint8_t& pixel = image_.pixels[static_cast<std::size_t>(v * image_.width + u)];
+    std::uint8_t& pixel = image_.at(u, v);
     const Eigen::Matrix3d to_marker = pose.orientation.toRotationMatrix().transpose();
     const Eigen::Vector3d eye = -(to_marker * pose.position);
     const auto middle = camera_.normalise(Eigen::Vector2d(u, v));

@@ -150,7 +150,7 @@ TEST_CASE("a marker under a hard shadow or a steep gradient of light is found an
     GreyImage& image = painter.image();
     for (int v = 0; v < image.height; ++v) {
       for (int u = 0; u < image.width; ++u) {
-        std::uint8_t& pixel = image.pixels[static_cast<std::size_t>(v * image.width + u)];
+        std::uint8_t& pixel = image.at(u, v);
         const double light = hard ? (u + v / 3 < 200 ? 1.0 : 0.55) : 1.1 - 0.8 * u / image.width;
         pixel = static_cast<std::uint8_t>(std::min(255.0, pixel * light));
       }
@@ -236,7 +236,7 @@ TEST_CASE("teeth that pair to no Manchester code are not silently accepted") {
         double turn = std::atan2(hit.y(), hit.x()) / (2 * std::numbers::pi);
         if (turn < 0) turn += 1;
         if (r < kCodeInnerRatio || r > kCodeOuterRatio || int(turn * 16) != tooth) continue;
-        std::uint8_t& pixel = image.pixels[static_cast<std::size_t>(v * image.width + u)];
+        std::uint8_t& pixel = image.at(u, v);
         pixel = static_cast<std::uint8_t>(250 - pixel);
       }
     }
@@ -254,8 +254,7 @@ TEST_CASE("shapes that are no markers are not reported") {
   const auto fill = [&](int u0, int v0, int u1, int v1, int level) {
     for (int v = v0; v < v1; ++v) {
       for (int u = u0; u < u1; ++u) {
-        image.pixels[static_cast<std::size_t>(v * image.width + u)] =
-            static_cast<std::uint8_t>(level);
+        image.at(u, v) = static_cast<std::uint8_t>(level);
       }
     }
   };

@@ -150,7 +150,7 @@ TEST_CASE("glare on a part of the marker moves the pose little") {
   for (int v = 0; v < image.height; ++v) {
     for (int u = 0; u < image.width; ++u) {
       if (std::hypot(u - ellipse.u - 0.9 * ellipse.a, v - ellipse.v) < 0.25 * ellipse.a) {
-        image.pixels[static_cast<std::size_t>(v * image.width + u)] = 255;
+        image.at(u, v) = 255;
       }
     }
   }

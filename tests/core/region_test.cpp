@@ -24,7 +24,7 @@ GreyImage blank(int width, int height, int level) {
 }
 
 void set(GreyImage& image, int u, int v, int level) {
-  image.pixels[static_cast<std::size_t>(v * image.width + u)] = static_cast<std::uint8_t>(level);
+  image.at(u, v) = static_cast<std::uint8_t>(level);
 }
 
 void paint_ellipse(GreyImage& image, const Ellipse& e, int level) {

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <iostream>
 #include <random>
 
 #include "tests/private_network.hpp"
@@ -251,7 +252,8 @@ int in_a_child(int ttl) {
     int seen = -1;
     try {
       seen = messages_that_leave(ttl);
-    } catch (const std::exception&) {
+    } catch (const std::exception& e) {
+      std::cerr << e.what() << '\n';
       seen = 99;
     }
     ::_exit(seen < 0 ? 255 : seen);
