@@ -32,6 +32,11 @@ constexpr double kMinSpread = 0.06;
 // Chance of a half-tooth being spoilt (glare, dirt), and of the ring carrying something else than a
 // code of the set.
 constexpr double kSpoilt = 0.01, kNoCode = 0.05;
+// Half-teeth that scatter by more of half the code's contrast err together (motion, a pose that is
+// off, a code of another length), which the likelihood of one by one knows nothing of: of such
+// readings none is surer than so. Of 57 000 readings at 0.99 or more, from easy to hopeless, 24
+// were wrong, 21 of them of such a scatter.
+constexpr double kDoubtfulSpread = 0.42, kSurestOfDoubtful = 0.985;
 
 }  // namespace
 
@@ -213,6 +218,9 @@ void CodeReader::decode(CodeReading& reading, int& start_half) {
   total += kNoCode * std::exp(none - reference);
   reading.id = best.id;
   reading.probability /= total;
+  if (reading.spread > kDoubtfulSpread) {
+    reading.probability = std::min(reading.probability, kSurestOfDoubtful);
+  }
   start_half = best.start;
 }
 
@@ -265,6 +273,7 @@ std::optional<CodeReading> CodeReader::read(const LumaView& frame,
   double phase = grid_phase();
   if (!fit_half_teeth(phase, levels.contrast())) return std::nullopt;
   CodeReading reading;
+  reading.spread = teeth_.sigma / teeth_.half_contrast;
   int start_half = 0;
   decode(reading, start_half);
   measure_edges(phase, reading);

@@ -20,8 +20,9 @@ struct CodeReading {
   double yaw = 0;  // radians, counter-clockwise on the face, from the projection's x axis to
                    // the start of the canonical word; valid when id > 0
   double edge_scatter =
-      0;          // sum of squared deviations of the teeth's edges from their even grid, px^2
-  int edges = 0;  // teeth edges that entered the scatter
+      0;              // sum of squared deviations of the teeth's edges from their even grid, px^2
+  int edges = 0;      // teeth edges that entered the scatter
+  double spread = 0;  // of the half-teeth about two colours, share of half their contrast
 };
 
 // Reads the necklace code from the ring between the dark disc and the bright centre ([P] 3.1.2;

@@ -36,7 +36,7 @@ void Detector::Impl::observe(const LumaView& frame) {
   markers.clear();
   for (const Segment& segment : segments) {
     const Observation observation = observer.observe(frame, segment);
-    if (!observation.plausible) continue;
+    if (!observation.convincing) continue;
     Marker marker = observer.to_marker(observation, 0);
     if (observation.id_probability >= parameters.min_id_probability) {
       marker.id = observation.id;

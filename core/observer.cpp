@@ -8,6 +8,7 @@
 
 #include "core/conic.hpp"
 #include "core/covariance.hpp"
+#include "core/plain_look.hpp"
 
 namespace roundel {
 
@@ -255,6 +256,39 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
   observation.plausible =
       read || ((observation.coded || may_be_plain_centre(segment)) && same_paper(frame, segment) &&
                candidates[best].explained(segment.levels.contrast()));
+  observation.convincing =
+      read || (observation.plausible && is_clean(frame, segment, candidates[best]));
+}
+
+// Whether what has no id to prove it is as clean as a print: noise alone makes its residuals, and
+// black and paper around are of one grey each.
+bool Observer::is_clean(const LumaView& frame, const Segment& segment,
+                        const Candidate& candidate) const {
+  const auto& fitted = candidate.fitted;
+  if (!fitted) return false;
+  const bool plain = candidate.pattern.kind == Pattern::Kind::kPlain;
+  // Teeth that are surely no word of the set may be another print's, if they are clean ones; cogs
+  // and petals are not.
+  constexpr double kSurelyNone = 0.05, kCleanTeeth = 0.16;
+  const auto& reading = candidate.reading;
+  if (!plain &&
+      (!reading || (reading->probability < kSurelyNone && reading->spread > kCleanTeeth))) {
+    return false;
+  }
+  constexpr double kMaxMarginOff = 0.1;
+  const Surroundings around =
+      look_around(frame, PlaneProjection(fitted->state.pose, parameters_.diameter_m / 2, *camera_),
+                  plain ? fitted->state.inner_ratio : 0, fitted->state.blur_px, segment.levels);
+  if (around.margin_off > kMaxMarginOff || around.ring_off > kMaxMarginOff) return false;
+  constexpr double kNoiseSlack = 2;  // the noise is measured on a few pixels
+  // Share of the contrast. What blur makes of a small disc the model has not quite right.
+  constexpr double kMaxMisfit = 0.03, kBlurredMisfit = 1.5;
+  const double blurred =
+      fitted->state.blur_px / std::max(1.0, fitted->state.inner_ratio * segment.ellipse.b);
+  const double misfit =
+      kMaxMisfit * (1 + kBlurredMisfit * std::min(1.0, blurred)) * segment.levels.contrast();
+  return std::max(fitted->outer_square, fitted->inner_square) <
+         kNoiseSlack * around.noise * around.noise + misfit * misfit;
 }
 
 // Fits the candidates' poses to some of the pixels, which mostly tells already which one it is.
@@ -408,13 +442,14 @@ Observation Observer::observe(const LumaView& frame, const Segment& segment) {
   if (camera_) {
     observe_with_camera(frame, observation);
   } else if (!reader_) {
-    observation.plausible = may_be_plain_centre(segment);
+    observation.plausible = observation.convincing = may_be_plain_centre(segment);
   } else {
     // Without a camera the ring is taken for concentric with the outline: good enough for the id.
     const auto reading = reader_->read(frame, PlaneProjection(segment.ellipse),
                                        mean_radius(segment.ellipse), segment.levels);
     observation.coded = reading.has_value();
-    observation.plausible = observation.coded || may_be_plain_centre(segment);
+    observation.plausible = observation.convincing =
+        observation.coded || may_be_plain_centre(segment);
     if (reading && reading->id > 0) {
       observation.id = reading->id;
       observation.id_probability = reading->probability;

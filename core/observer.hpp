@@ -33,11 +33,12 @@ struct Observation {
   double id_probability = 0;  // given this frame alone
   bool coded = false;         // a code ring was seen, whether or not its id is in the set
   bool plausible = false;  // what lies inside is a code, a plain marker's disc or too small to tell
-  bool followed = false;   // fitted from what the track knew: no new reading, no weighing
-  bool disturbed = false;  // followed where something lies over it or its light is not even
-  bool lit_anew = true;    // the slope of the light was fitted
-  double surprise_px = 0;  // of a followed one: how far from the expected place it was
-  int pose_count = 0;      // 0 without a camera model, else 2
+  bool convincing = false;  // so much like a marker that this frame alone is proof of one
+  bool followed = false;    // fitted from what the track knew: no new reading, no weighing
+  bool disturbed = false;   // followed where something lies over it or its light is not even
+  bool lit_anew = true;     // the slope of the light was fitted
+  double surprise_px = 0;   // of a followed one: how far from the expected place it was
+  int pose_count = 0;       // 0 without a camera model, else 2
   std::array<PoseHypothesis, 2> poses;  // the likelier one first
 };
 
@@ -101,6 +102,7 @@ class Observer {
   Pattern plain_pattern(const Segment& segment) const;
   void observe_with_camera(const LumaView& frame, Observation& observation);
   void fit_roughly(const Segment& segment, std::array<Candidate, 2>& candidates);
+  bool is_clean(const LumaView& frame, const Segment& segment, const Candidate& candidate) const;
   void refine(const LumaView& frame, const Segment& segment, std::array<Candidate, 2>& candidates);
 
   static Observation followed(const Pattern& pattern, const Expectation& expected,

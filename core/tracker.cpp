@@ -92,7 +92,7 @@ void Tracker::Impl::adopt(const Observation& observation) {
     return;
   }
   // A track may be blurred or half covered for a while; a newcomer has to look like a marker.
-  if (!observation.plausible) return;
+  if (!observation.convincing) return;
   if (tracks.size() >= static_cast<std::size_t>(parameters.max_markers)) return;
   Track& track = tracks.emplace_back();
   track.number = next_number++;
