@@ -29,8 +29,12 @@ double CurveEvidence::centre() const {
   return std::clamp(1 + weighted_ / information, kLowest, kHighest);
 }
 
+bool CurveEvidence::is_settled() const {
+  return information_ >= 1 / (kSettledSigma * kSettledSigma);
+}
+
 bool CurveEvidence::wants_more() {
-  return information_ < 1 / (kSettledSigma * kSettledSigma) || ++asked_ % kNowAndThen == 0;
+  return !is_settled() || ++asked_ % kNowAndThen == 0;
 }
 
 void CurveEvidence::add(const std::array<double, 3>& squares) {

@@ -21,6 +21,8 @@ class CurveEvidence {
 
   // Whether a further marker would tell something new. To be asked once for every marker.
   bool wants_more();
+  // Whether a marker now and then is enough.
+  bool is_settled() const;
 
   // The exponent to be used. 1, the linear one, until the evidence is clear that it is not.
   double exponent() const { return exponent_; }

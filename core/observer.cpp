@@ -248,8 +248,8 @@ void Observer::observe_with_camera(const LumaView& frame, Observation& observati
     observation.id_probability =
         candidates[best].reading->probability * word_credence(candidates[best].fitted, segment);
   }
-  if (!parameters_.response && candidates[best].fitted && curve_evidence_.wants_more()) {
-    weigh_curve(frame, segment, candidates[best]);
+  if (candidates[best].fitted && wants_curve() && curve_evidence_.wants_more()) {
+    weigh_curve(frame, segment, candidates[best].hypothesis);
   }
   // A code that can be read is proof enough, whatever light or glare do to the residuals.
   const bool read = observation.id_probability >= parameters_.min_id_probability;
@@ -383,25 +383,25 @@ void Observer::refine(const LumaView& frame, const Segment& segment,
 
 // How well the marker would be explained by curves around the likeliest one.
 void Observer::weigh_curve(const LumaView& frame, const Segment& segment,
-                           const Candidate& candidate) {
-  const Pattern& pattern = candidate.pattern;
+                           const PoseHypothesis& hypothesis) {
+  const Pattern& pattern = hypothesis.pattern;
   const EdgeLook usual = edge_look(pattern);
   if (usual.shift_sigma_px < 0.1) return;  // a shift that may not be fitted would look like a curve
   // Light is read off noisy grey levels, and noise as strong as this bends a curve by itself.
   constexpr double kMaxNoise = 0.04;  // share of the contrast
   const double limit = kMaxNoise * segment.levels.contrast();
-  if (candidate.fitted->mean_square > limit * limit) return;
-  const PhotometricState& fitted = candidate.fitted->state;
+  if (hypothesis.mean_square > limit * limit) return;
+  const PhotometricState& fitted = *hypothesis.state;
+  --curve_turns_;
   EdgeLook look = usual;
   look.blur_px = fitted.blur_px;
   constexpr double kStartDeviation = 0.02, kCurveError = 0.01;  // share of the contrast
   const double error = kCurveError * segment.levels.contrast();
-  const double variance = candidate.fitted->mean_square + error * error;
+  const double variance = hypothesis.mean_square + error * error;
   FitPlan plan;
   plan.rough_steps = 0;
   plan.max_steps = 5;
-  plan.deviation =
-      std::sqrt(candidate.fitted->mean_square) + kStartDeviation * segment.levels.contrast();
+  plan.deviation = std::sqrt(hypothesis.mean_square) + kStartDeviation * segment.levels.contrast();
   std::array<double, 3> squares{};
   bool whole = true;
   for (std::size_t k = 0; k < squares.size() && whole; ++k) {
@@ -419,6 +419,18 @@ void Observer::weigh_curve(const LumaView& frame, const Segment& segment,
   }
   fit_.set_response(response_);
   if (whole) curve_evidence_.add(squares);
+}
+
+bool Observer::wants_curve() const {
+  return !parameters_.response && curve_turns_ > 0;
+}
+
+bool Observer::ask_for_curve(const LumaView& frame, const Observation& followed) {
+  if (!wants_curve() || curve_evidence_.is_settled()) return false;
+  if (followed.pose_count > 0 && followed.poses[0].state) {
+    weigh_curve(frame, followed.segment, followed.poses[0]);
+  }
+  return true;
 }
 
 bool Observer::settle_curve() {

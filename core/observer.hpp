@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -85,6 +86,11 @@ class Observer {
   // A pose's image; nothing where it has none.
   std::optional<Ellipse> outline(const Pose& pose) const;
 
+  // Asks no more than so many markers for the camera's curve until this is said again: each costs
+  // as much as three fits.
+  void limit_curve_turns(int markers) { curve_turns_ = markers; }
+  // Asks a followed marker. False when no further one need be asked.
+  bool ask_for_curve(const LumaView& frame, const Observation& followed);
   // Takes the response curve for what the markers observed so far tell, if that has changed.
   bool settle_curve();
   // Back to knowing nothing of the curve, unless it was given.
@@ -109,7 +115,8 @@ class Observer {
                               const PhotometricPose& fitted);
   static PhotometricState start_from(const PoseHypothesis& last, const Pose& expected);
 
-  void weigh_curve(const LumaView& frame, const Segment& segment, const Candidate& candidate);
+  bool wants_curve() const;
+  void weigh_curve(const LumaView& frame, const Segment& segment, const PoseHypothesis& hypothesis);
 
   DetectorParameters parameters_;
   std::optional<CameraModel> camera_;
@@ -117,6 +124,7 @@ class Observer {
   ResponseCurve response_;            // in use
   double exponent_ = 1;               // of it, where it was not given
   CurveEvidence curve_evidence_;
+  int curve_turns_ = std::numeric_limits<int>::max();  // markers that are still to be asked
   PhotometricFit fit_;
   std::vector<PhotometricFit> more_fits_;  // of workers other than 0
 };

@@ -12,6 +12,7 @@ constexpr int kMaxMissed = 30;       // frames; then a track ends
 constexpr int kMaxImplausible = 15;  // frames; a blurred or half covered marker recovers
 constexpr int kNewcomerFrames = 5;   // a full search is spread over as many frames
 constexpr double kLocalReach = 2.0;  // of the search around an expected place, in diameters
+constexpr int kCurveTurns = 2;       // markers a frame that are asked for the camera's curve
 constexpr double kSureReading = 0.99;
 constexpr double kAnyTurn = 1.81;  // radians: standard deviation of a turn that may be any
 
@@ -125,6 +126,16 @@ void Tracker::Impl::exchange_mistaken() {
   }
 }
 
+// Until the camera's curve is known, followed markers are asked for it by turns.
+void Tracker::Impl::ask_for_curve(const LumaView& frame) {
+  const auto count = static_cast<std::int64_t>(tracks.size());
+  for (std::int64_t k = 0; k < count; ++k) {
+    const Track& track = tracks[static_cast<std::size_t>((frames + k) % count)];
+    if (!track.seen || !track.observation.followed || track.observation.disturbed) continue;
+    if (!observer.ask_for_curve(frame, track.observation)) return;
+  }
+}
+
 void Tracker::Impl::publish() {
   markers.clear();
   for (const Track& track : tracks) {
@@ -159,6 +170,7 @@ std::span<const Marker> Tracker::track(const LumaView& frame) {
   check_frame(frame, self.observer.camera());
   ++self.frames;
   self.search.begin(frame);
+  self.observer.limit_curve_turns(kCurveTurns);
   self.found.clear();
   StageStopwatch stopwatch(self.clock);
   self.follow_tracks(frame);
@@ -168,6 +180,7 @@ std::span<const Marker> Tracker::track(const LumaView& frame) {
   self.stage_times.searching_ns = stopwatch.lap_ns();
   for (const Segment& segment : self.found) self.adopt(self.observer.observe(frame, segment));
   self.exchange_mistaken();
+  self.ask_for_curve(frame);
   self.stage_times.identifying_ns = stopwatch.lap_ns();
   std::erase_if(self.tracks, [](const Track& track) {
     return track.missed > kMaxMissed || track.implausible > kMaxImplausible;

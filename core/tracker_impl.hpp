@@ -56,6 +56,7 @@ struct Tracker::Impl {
   void exchange_mistaken();
   void adopt(const Observation& observation);
   Track* lost_track_for(const Observation& observation);
+  void ask_for_curve(const LumaView& frame);
   void publish();
 
   DetectorParameters parameters;

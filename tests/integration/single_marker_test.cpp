@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/detector.hpp"
+#include "core/tracker.hpp"
 #include "simulator/random.hpp"
 #include "tests/integration/one_marker.hpp"
 
@@ -67,6 +68,31 @@ TEST_CASE("with its response curve known, a camera with gamma is as good as a li
   // This is what it mends.
   const Errors unknown = errors_of(imaging, ResponseCurve::linear(), 0.5, {0, 0, 0});
   CHECK(unknown.distance > 4e-4);
+}
+
+TEST_CASE("a marker that is followed tells its camera's gamma within some frames") {
+  Imaging imaging = usual_imaging();
+  imaging.srgb = true;
+  imaging.noise_sigma = 1;
+  const SceneMarker marker = marker_at({0.011, -0.007, 2}, 0.5);
+  Renderer renderer(camera(), imaging);
+  DetectorParameters parameters;
+  parameters.diameter_m = marker.diameter_m;
+  Tracker tracker(parameters, camera());
+  const auto distances = [&](std::uint64_t first, std::uint64_t count) {
+    double sum = 0;
+    GreyImage image;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      renderer.render(scene_of(marker), first + i, image);
+      const auto found = tracker.track(image.view());
+      REQUIRE(found.size() == 1);
+      sum += found[0].pose.position.z() / marker.pose.position.z() - 1;
+    }
+    return std::abs(sum / static_cast<double>(count));
+  };
+  CHECK(distances(1, 1) > 4e-4);
+  distances(2, 30);
+  CHECK(distances(40, 10) < 2.5e-4);
 }
 
 TEST_CASE("blur by motion of a twelfth of the diameter moves the pose little") {
