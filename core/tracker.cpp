@@ -13,6 +13,8 @@ constexpr int kMaxImplausible = 15;  // frames; a blurred or half covered marker
 constexpr int kNewcomerFrames = 5;   // a full search is spread over as many frames
 constexpr double kLocalReach = 2.0;  // of the search around an expected place, in diameters
 constexpr int kCurveTurns = 2;       // markers a frame that are asked for the camera's curve
+constexpr int kAskings = 64;         // of followed markers
+constexpr std::int64_t kAskingInterval = 16;
 constexpr double kSureReading = 0.99;
 constexpr double kAnyTurn = 1.81;  // radians: standard deviation of a turn that may be any
 
@@ -126,13 +128,16 @@ void Tracker::Impl::exchange_mistaken() {
   }
 }
 
-// Until the camera's curve is known, followed markers are asked for it by turns.
+// Until the camera's curve is known, followed markers are asked for it by turns: at first in every
+// frame, then now and then, for where they are small or the picture is noisy there is no end to it.
 void Tracker::Impl::ask_for_curve(const LumaView& frame) {
+  if (askings > kAskings && frames % kAskingInterval != 0) return;
   const auto count = static_cast<std::int64_t>(tracks.size());
   for (std::int64_t k = 0; k < count; ++k) {
     const Track& track = tracks[static_cast<std::size_t>((frames + k) % count)];
     if (!track.seen || !track.observation.followed || track.observation.disturbed) continue;
     if (!observer.ask_for_curve(frame, track.observation)) return;
+    askings = std::min(askings + 1, kAskings + 1);
   }
 }
 
@@ -208,6 +213,7 @@ const StageTimes& Tracker::stage_times() const {
 void Tracker::reset() {
   impl_->tracks.clear();
   impl_->observer.forget_curve();
+  impl_->askings = 0;
   impl_->band = 0;
 }
 

@@ -69,6 +69,7 @@ struct Tracker::Impl {
   std::shared_ptr<Workers> workers;
   std::int64_t next_number = 1;
   std::int64_t frames = 0;
+  int askings = 0;             // of followed markers for the camera's curve, up to a limit
   std::int64_t undecided = 0;  // tracks whose pose was not sure at the frame's start
   int band = 0;                // the part of the image searched for newcomers in this frame
   StageStopwatch::Clock clock = nullptr;
