@@ -29,7 +29,7 @@ class EllipseRows {
   std::array<Span, kShares> inside(double dv, const std::array<double, kShares>& shares) const {
     const double b = mixed_ * dv, middle = u_ - b * per_square_;
     const double full = b * b - square_ * constant_ * dv * dv;
-    std::array<Span, kShares> spans;
+    std::array<Span, kShares> spans{};
     for (std::size_t i = 0; i < kShares; ++i) {
       const double root = shares[i] > 0 ? full + square_ * shares[i] * shares[i] : -1;
       const double half = root < 0 ? -0.5 : std::sqrt(root) * per_square_;

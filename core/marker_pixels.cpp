@@ -1,5 +1,6 @@
 #include "core/marker_pixels.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -100,6 +101,7 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
   const double half_u = std::hypot(a * cosine, b * sine), half_v = std::hypot(a * sine, b * cosine);
   const auto patch = LensPatch::make(camera, {ellipse.u, ellipse.v}, std::max(half_u, half_v));
   if (!patch) return false;
+  centre_ = {ellipse.u, ellipse.v};
   middle_ = patch->normalise(0, 0);
   pixel_slope_ = patch->slope();
 
@@ -142,6 +144,28 @@ bool MarkerPixels::load(const LumaView& frame, const CameraModel& camera,
   outer_.finish(*patch, response);
   inner_.finish(*patch, response);
   return true;
+}
+
+void MarkerPixels::relight(const ShadowEdge& edge) {
+  relight(edge, outer_);
+  relight(edge, inner_);
+}
+
+// Along the edge's normal a pixel lies as far as its place in the plane says: the lens is as good
+// as linear over a marker.
+void MarkerPixels::relight(const ShadowEdge& edge, Columns& columns) const {
+  const Eigen::Vector2d along = pixel_slope_.transpose().inverse() * edge.into_shadow;
+  const double at_centre = edge.into_shadow.dot(centre_);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(columns.used); ++i) {
+    const double d = at_centre + along.x() * static_cast<double>(columns.x[i]) +
+                     along.y() * static_cast<double>(columns.y[i]);
+    if (d >= edge.shaded_from) {
+      columns.grey[i] /= static_cast<float>(edge.light);
+      columns.weight[i] *= static_cast<float>(edge.light);  // as its noise
+    } else if (d > edge.lit_to) {
+      columns.weight[i] = 0;
+    }
+  }
 }
 
 }  // namespace roundel

@@ -11,6 +11,7 @@
 #include "core/marker_geometry.hpp"
 #include "core/photometric_kernel.hpp"
 #include "core/response_curve.hpp"
+#include "core/shadow_edge.hpp"
 
 namespace roundel {
 
@@ -28,6 +29,9 @@ class MarkerPixels {
   // there are too few or where the lens model ends.
   bool load(const LumaView& frame, const CameraModel& camera, const ResponseCurve& response,
             const Ellipse& ellipse, double reach_px, const InnerEdges& inner = {});
+
+  // Gives what lies in a shadow the light of what does not; what may be either counts for nothing.
+  void relight(const ShadowEdge& edge);
 
   PixelColumns outer() const { return outer_.view(); }
   PixelColumns inner() const { return inner_.view(); }
@@ -52,7 +56,10 @@ class MarkerPixels {
   // Appends the pixels u0, u0 + stride, ... up to u1 of a row.
   static void take(const Row& row, int u0, int u1, int stride, Columns& columns);
 
+  void relight(const ShadowEdge& edge, Columns& columns) const;
+
   Columns outer_, inner_;
+  Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();  // pixel of the middle
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d pixel_slope_ = Eigen::Matrix2d::Identity();
 };

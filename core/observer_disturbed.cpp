@@ -45,6 +45,9 @@ std::optional<Observation> Observer::follow_disturbed(const LumaView& frame,
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * start.contrast;
   plan.max_deviation = std::sqrt(last.mean_square) + kMoreDeviation * start.contrast;
   plan.weigh_parts = true;
+  const auto shadow =
+      find_shadow_edge(frame, PlaneProjection(expected.pose, radius_m, *camera_), response_);
+  if (shadow) fit_.relight(*shadow);
   const auto fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);
   if (!fitted || fitted->trust < kMinTrust || fitted->inner_trust < kMinInnerTrust) {
     return std::nullopt;
@@ -65,7 +68,7 @@ std::optional<Observation> Observer::follow_disturbed(const LumaView& frame,
   if (!seen) return std::nullopt;
   Observation observation = followed(last.pattern, expected, *fitted);
   observation.segment.ellipse = *seen;
-  observation.disturbed = fitted->trust < kUndisturbed;
+  observation.disturbed = shadow || fitted->trust < kUndisturbed;
   if (reader_ && observation.coded) {
     const auto reading = reader_->read(frame, PlaneProjection(state.pose, radius_m, *camera_),
                                        expected.ellipse.a, expected.levels);

@@ -98,6 +98,9 @@ class PhotometricFit {
   bool load(const LumaView& frame, const CameraModel& camera, const Ellipse& ellipse,
             double radius_m, double reach_px, const InnerEdges& inner = {});
 
+  // The same pixels with a shadow taken off them.
+  void relight(const ShadowEdge& edge) { pixels_.relight(edge); }
+
   int loaded_pixels() const { return pixels_.outer_count() + pixels_.inner_count(); }
 
   // Dark and contrast as the fit counts them.

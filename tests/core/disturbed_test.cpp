@@ -107,6 +107,24 @@ TEST_CASE("glare over some teeth and the rim takes neither track, id nor pose") 
   }
 }
 
+TEST_CASE("the hard edge of a shadow across a marker takes neither track, id nor pose") {
+  for (const double place : {-0.5, 0.0, 0.6}) {
+    for (const double angle : {0.0, 1.0, 4.0}) {
+      CAPTURE(place);
+      CAPTURE(angle);
+      Film film;
+      film.warm_up();
+      for (int i = 0; i < 3; ++i) {
+        const auto markers = film.show([&](double grey, double x, double y) {
+          return x * std::cos(angle) + y * std::sin(angle) > place ? grey * 0.5 : grey;
+        });
+        REQUIRE(markers.size() == 1);
+        check_pose(markers[0], film.truth);
+      }
+    }
+  }
+}
+
 TEST_CASE("a marker that is taken away while half hidden is not reported as still there") {
   Film film;
   film.warm_up();
