@@ -58,7 +58,7 @@ struct FitPlan {
   double deviation = 0;  // of the residuals, grey levels, as far as it can be foreseen
   // And as which they count after the first step at most: what is more is something else.
   double max_deviation = std::numeric_limits<double>::infinity();
-  int rough_steps = 1;   // first ones, that use one of `rough_every` blocks of pixels
+  int rough_steps = 1;  // first ones, that use one of `rough_every` blocks of pixels
   int rough_every = 2;
   int min_steps = 2, max_steps = 6;
   // The last step is one that leaves less than so many standard deviations.
