@@ -8,7 +8,9 @@ namespace roundel {
 
 namespace {
 
-constexpr double kReach = 3.0;  // pixels on either side of an edge
+constexpr double kReach = 3.0;      // pixels on either side of an edge
+constexpr double kSamePlace = 0.5;  // pixels
+constexpr int kRounds = 3;
 
 // Residuals at the start, share of the contrast: what is far from the model is left out at once.
 constexpr double kStartDeviation = 0.06;
@@ -35,8 +37,7 @@ std::optional<Observation> Observer::follow_disturbed(const LumaView& frame,
   const double radius_m = parameters_.diameter_m / 2;
   InnerEdges inner;
   if (last.pattern.kind == Pattern::Kind::kCode) inner.low = kCodeInnerRatio;
-  if (!fit_.load(frame, *camera_, expected.ellipse, radius_m, kReach, inner)) return std::nullopt;
-  const PhotometricState start = start_from(last, expected.pose);
+  PhotometricState start = start_from(last, expected.pose);
   FitPlan plan;
   plan.unknowns = kCodeUnknowns;
   plan.rough_steps = 0;
@@ -45,13 +46,24 @@ std::optional<Observation> Observer::follow_disturbed(const LumaView& frame,
   plan.deviation = std::sqrt(last.mean_square) + kStartDeviation * start.contrast;
   plan.max_deviation = std::sqrt(last.mean_square) + kMoreDeviation * start.contrast;
   plan.weigh_parts = true;
-  const auto shadow =
-      find_shadow_edge(frame, PlaneProjection(expected.pose, radius_m, *camera_), response_);
-  if (shadow) fit_.relight(*shadow);
-  const auto fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);
-  if (!fitted || fitted->trust < kMinTrust || fitted->inner_trust < kMinInnerTrust) {
-    return std::nullopt;
+  std::optional<PhotometricPose> fitted;
+  std::optional<ShadowEdge> shadow;
+  std::optional<Ellipse> seen;
+  // Where it was not where it was expected, a part of its edges lay beyond the pixels looked at.
+  Ellipse place = expected.ellipse;
+  for (int round = 0; round < kRounds; ++round) {
+    if (!fit_.load(frame, *camera_, place, radius_m, kReach, inner)) return std::nullopt;
+    shadow = find_shadow_edge(frame, PlaneProjection(start.pose, radius_m, *camera_), response_);
+    if (shadow) fit_.relight(*shadow);
+    fitted = fit_.fit(start, last.pattern, edge_look(last.pattern), plan);
+    if (!fitted) return std::nullopt;
+    seen = outline(fitted->state.pose);
+    if (!seen) return std::nullopt;
+    if (std::hypot(seen->u - place.u, seen->v - place.v) < kSamePlace) break;
+    place = *seen;
+    start = fitted->state;
   }
+  if (fitted->trust < kMinTrust || fitted->inner_trust < kMinInnerTrust) return std::nullopt;
   const PhotometricState& state = fitted->state;
   const double limit = kMaxResidual * state.contrast;
   if (state.contrast < parameters_.min_contrast || fitted->mean_square > limit * limit) {
@@ -64,8 +76,6 @@ std::optional<Observation> Observer::follow_disturbed(const LumaView& frame,
   const Eigen::Vector3d moved = state.pose.position - expected.pose.position;
   if (moved.head<2>().norm() > allowed || turned > kMaxTurn) return std::nullopt;
 
-  const auto seen = outline(state.pose);
-  if (!seen) return std::nullopt;
   Observation observation = followed(last.pattern, expected, *fitted);
   observation.segment.ellipse = *seen;
   observation.disturbed = shadow || fitted->trust < kUndisturbed;
