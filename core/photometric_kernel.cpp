@@ -122,7 +122,7 @@ ROUNDEL_INLINE void add_tile(const Rows<kUnknowns, V>& rows, std::size_t groups,
     }
   };
   for (std::size_t part = 0; part < kParts<V>; ++part) {
-    std::array<V, kTileRows * kTileColumns> sums;
+    std::array<V, kTileRows * kTileColumns> sums{};
     each([&](std::size_t r, std::size_t c, std::size_t k)
              __attribute__((always_inline)) { sums[k] = products[entry(r, c)][part]; });
 #pragma GCC unroll 1
